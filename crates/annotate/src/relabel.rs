@@ -1,0 +1,215 @@
+//! Labels for unlabelled background (labels.md section 5).
+
+use nalgebra::Point3;
+use occlabel_core::{AggregatedScene, BackgroundSweep, ClassId, ClassSet, DropCounts, Taxonomy};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::knn::{KdTree, Labelled, Neighbour};
+
+/// How unlabelled background points get a class.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RelabelSettings {
+    /// How many neighbours vote, at least 1.
+    pub k: usize,
+    /// How far a neighbour may be, metres; `None` lifts the limit.
+    pub max_distance_m: Option<f64>,
+    /// The class of a point without a neighbour in reach; `None` drops it.
+    pub unknown: Option<ClassId>,
+    /// Classes whose background points are dropped afterwards.
+    pub ghosts: ClassSet,
+}
+
+/// Which background points are left-overs of unboxed or badly boxed objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GhostClasses {
+    /// The taxonomy's things.
+    Things,
+    /// The taxonomy's movers.
+    Movers,
+    /// None are.
+    None,
+}
+
+impl GhostClasses {
+    /// The classes meant: only those that boxes could have held, and only if there is a track.
+    pub fn of(self, taxonomy: &Taxonomy, has_track: bool) -> ClassSet {
+        match self {
+            _ if !has_track => ClassSet::default(),
+            Self::Things => taxonomy.things.intersection(&taxonomy.boxed()),
+            Self::Movers => taxonomy.movers.intersection(&taxonomy.boxed()),
+            Self::None => ClassSet::default(),
+        }
+    }
+}
+
+/// Gives every background point a class or drops it. Points of tracks keep theirs.
+///
+/// A point votes with its nearest labelled neighbours of the whole scene, ordered by
+/// (distance, class id); on equal votes the tied class that comes first in that order wins.
+/// Parallel over sweeps; the order of threads does not show.
+pub fn relabel(
+    scene: AggregatedScene<Option<ClassId>>,
+    settings: &RelabelSettings,
+) -> AggregatedScene<ClassId> {
+    let tree = KdTree::new(labelled_points(&scene));
+    let relabelled: Vec<_> = scene
+        .background
+        .into_par_iter()
+        .map(|sweep| relabel_sweep(sweep, &tree, settings))
+        .collect();
+    let mut dropped = scene.dropped;
+    let mut background = Vec::with_capacity(relabelled.len());
+    for (sweep, drops) in relabelled {
+        background.push(sweep);
+        dropped += drops;
+    }
+    AggregatedScene { background, objects: scene.objects, dropped }
+}
+
+fn labelled_points(scene: &AggregatedScene<Option<ClassId>>) -> Vec<Labelled> {
+    let clouds = scene.background.iter().map(|sweep| &sweep.cloud);
+    clouds
+        .flat_map(|cloud| cloud.positions.iter().zip(&cloud.labels))
+        .filter_map(|(position, label)| Some((*position, (*label)?)))
+        .collect()
+}
+
+fn relabel_sweep(
+    sweep: BackgroundSweep<Option<ClassId>>,
+    tree: &KdTree,
+    settings: &RelabelSettings,
+) -> (BackgroundSweep<ClassId>, DropCounts) {
+    let mut drops = DropCounts::default();
+    let classes = classify_points(&sweep, tree, settings);
+    let cloud = sweep.cloud.filter_map(|i, _| match classes[i] {
+        None => {
+            drops.unknown += 1;
+            None
+        }
+        Some(class) if settings.ghosts.contains(class) => {
+            drops.ghost += 1;
+            None
+        }
+        class => class,
+    });
+    (BackgroundSweep { time: sweep.time, cloud }, drops)
+}
+
+/// Points to a parallel task: enough to repay its start.
+const POINTS_A_TASK: usize = 4096;
+
+fn classify_points(
+    sweep: &BackgroundSweep<Option<ClassId>>,
+    tree: &KdTree,
+    settings: &RelabelSettings,
+) -> Vec<Option<ClassId>> {
+    let cloud = &sweep.cloud;
+    (cloud.positions.par_iter().zip(&cloud.labels))
+        .with_min_len(POINTS_A_TASK)
+        .map_init(Vec::new, |found, (position, label)| {
+            label.or_else(|| vote(position, tree, settings, found))
+        })
+        .collect()
+}
+
+fn vote(
+    p: &Point3<f64>,
+    tree: &KdTree,
+    settings: &RelabelSettings,
+    found: &mut Vec<Neighbour>,
+) -> Option<ClassId> {
+    let reach = settings.max_distance_m.unwrap_or(f64::INFINITY);
+    tree.nearest(p, settings.k, reach * reach, found);
+    first_most_frequent(found).or(settings.unknown)
+}
+
+/// The class with most neighbours; of several, the one that comes first.
+fn first_most_frequent(neighbours: &[Neighbour]) -> Option<ClassId> {
+    let votes = |class: ClassId| neighbours.iter().filter(|other| other.1 == class).count();
+    let mut winner: Option<(usize, ClassId)> = None;
+    for &(_, class) in neighbours {
+        let count = votes(class);
+        if winner.is_none_or(|(most, _)| count > most) {
+            winner = Some((count, class));
+        }
+    }
+    winner.map(|(_, class)| class)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use occlabel_core::{PointCloud, Timestamp};
+
+    const A: ClassId = ClassId(3);
+    const B: ClassId = ClassId(1);
+
+    fn settings() -> RelabelSettings {
+        RelabelSettings {
+            k: 3,
+            max_distance_m: Some(1.0),
+            unknown: Some(ClassId(9)),
+            ghosts: ClassSet::default(),
+        }
+    }
+
+    /// Points along x, with a label or none.
+    fn scene(points: &[(f64, Option<ClassId>)]) -> AggregatedScene<Option<ClassId>> {
+        let mut cloud = PointCloud::with_origins(vec![Point3::origin()]);
+        points.iter().for_each(|(x, label)| cloud.push(Point3::new(*x, 0.0, 0.0), *label, 0));
+        let background = vec![BackgroundSweep { time: Timestamp(0), cloud }];
+        AggregatedScene { background, objects: Vec::new(), dropped: DropCounts::default() }
+    }
+
+    fn labels(points: &[(f64, Option<ClassId>)], settings: &RelabelSettings) -> Vec<ClassId> {
+        relabel(scene(points), settings).background[0].cloud.labels.clone()
+    }
+
+    #[test]
+    fn section_5_the_majority_of_k_neighbours_wins() {
+        let points = [(0.0, Some(A)), (0.3, Some(B)), (0.4, Some(B)), (0.1, None)];
+        assert_eq!(labels(&points, &settings())[3], B);
+    }
+
+    #[test]
+    fn section_5_on_equal_votes_the_nearest_class_wins_and_at_one_distance_the_lower_id() {
+        let mut two = settings();
+        two.k = 2;
+        assert_eq!(labels(&[(0.0, Some(A)), (0.5, Some(B)), (0.2, None)], &two)[2], A);
+        assert_eq!(labels(&[(0.0, Some(A)), (0.5, Some(B)), (0.25, None)], &two)[2], B);
+    }
+
+    #[test]
+    fn section_5_neighbours_out_of_reach_do_not_vote() {
+        let points = [(0.0, Some(A)), (1.0, None), (1.000_001, None)];
+        assert_eq!(labels(&points, &settings()), [A, A, ClassId(9)]);
+        let mut far = settings();
+        far.max_distance_m = None;
+        assert_eq!(labels(&points, &far), [A, A, A]);
+    }
+
+    #[test]
+    fn section_5_a_point_without_neighbour_is_dropped_if_unknown_is_drop() {
+        let mut drop = settings();
+        drop.unknown = None;
+        let relabelled = relabel(scene(&[(0.0, Some(A)), (5.0, None)]), &drop);
+        assert_eq!((relabelled.point_count(), relabelled.dropped.unknown), (1, 1));
+    }
+
+    #[test]
+    fn section_5_ghosts_are_dropped_labelled_or_not() {
+        let mut ghosts = settings();
+        ghosts.ghosts.insert(A);
+        let relabelled = relabel(scene(&[(0.0, Some(A)), (0.1, None), (9.0, Some(B))]), &ghosts);
+        assert_eq!(relabelled.background[0].cloud.labels, [B]);
+        assert_eq!(relabelled.dropped.ghost, 2);
+    }
+
+    #[test]
+    fn fault_28_an_unlabelled_point_never_votes_as_class_0() {
+        let points = [(0.0, None), (0.1, None), (0.2, Some(A)), (0.05, None)];
+        assert_eq!(labels(&points, &settings()), [A; 4]);
+    }
+}

@@ -1,0 +1,1 @@
+//! The occlabel program: arguments, progress, exit codes.

@@ -1,0 +1,89 @@
+//! A whole scene's points, sorted into world and boxes.
+
+use nalgebra::Point3;
+
+use crate::{Box3, ClassId, PointCloud, Timestamp, TrackId};
+
+/// A scene's points: what stands in the world, and what moves with a track.
+///
+/// `L` is `Option<ClassId>` until the background is relabelled, then [`ClassId`].
+#[derive(Clone, Debug)]
+pub struct AggregatedScene<L> {
+    /// One cloud a sweep, in world coordinates.
+    pub background: Vec<BackgroundSweep<L>>,
+    /// One cloud for each track in each sweep that has points in its box.
+    pub objects: Vec<ObjectSweep>,
+    /// What was left out.
+    pub dropped: DropCounts,
+}
+
+/// The background points of one sweep. World coordinates.
+#[derive(Clone, Debug)]
+pub struct BackgroundSweep<L> {
+    /// The sweep's time.
+    pub time: Timestamp,
+    /// Its points.
+    pub cloud: PointCloud<L>,
+}
+
+/// The points of one track in one sweep. Box coordinates of that moment, ray origins too.
+#[derive(Clone, Debug)]
+pub struct ObjectSweep {
+    /// Whose points these are.
+    pub track: TrackId,
+    /// The sweep's time.
+    pub time: Timestamp,
+    /// The box at that time, as annotated, interpolated or extrapolated.
+    pub boxed: Box3,
+    /// The points, each labelled with the track's class.
+    pub cloud: PointCloud<ClassId>,
+}
+
+/// How many points were dropped, and why. A dropped point's whole ray is dropped with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DropCounts {
+    /// A coordinate that is no finite number.
+    pub not_finite: u64,
+    /// Exactly at the ray's origin.
+    pub at_origin: u64,
+    /// Inside the ego volume.
+    pub ego: u64,
+    /// Farther than `max_range_m`.
+    pub far: u64,
+    /// Its raw label means `ignore`.
+    pub ignored_label: u64,
+    /// Inside a track whose category means `ignore`.
+    pub ignored_track: u64,
+    /// Without a label, a neighbour in reach, or an `unknown_class`.
+    pub unknown: u64,
+    /// Of a class of `drop_ghosts`, outside every box.
+    pub ghost: u64,
+}
+
+impl std::ops::AddAssign for DropCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.not_finite += other.not_finite;
+        self.at_origin += other.at_origin;
+        self.ego += other.ego;
+        self.far += other.far;
+        self.ignored_label += other.ignored_label;
+        self.ignored_track += other.ignored_track;
+        self.unknown += other.unknown;
+        self.ghost += other.ghost;
+    }
+}
+
+impl<L> AggregatedScene<L> {
+    /// How many points are left.
+    pub fn point_count(&self) -> usize {
+        let background: usize = self.background.iter().map(|sweep| sweep.cloud.len()).sum();
+        background + self.objects.iter().map(|object| object.cloud.len()).sum::<usize>()
+    }
+}
+
+impl ObjectSweep {
+    /// The ray origin of point `i`, box coordinates.
+    pub fn origin(&self, i: usize) -> Point3<f64> {
+        self.cloud.origin(i)
+    }
+}

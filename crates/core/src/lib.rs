@@ -1,0 +1,54 @@
+//! The words that every stage shares, and the geometry of the grid.
+//!
+//! All of it is values: no I/O, no threads, no logging. Each convention lives in one place and is
+//! drawn there: where a voxel begins in `grid`, how a box stands in `boxes`, how a ray is walked in
+//! `traverse`. Frames are bound to names, `let p_ego = ego_from_lidar * p_lidar`; units are SI and
+//! radians.
+//!
+//! ```
+//! use nalgebra::Point3;
+//! use occlabel_core::{GridSpec, traverse};
+//!
+//! let spec = GridSpec::new([-40.0, -40.0, -1.0], [40.0, 40.0, 5.4], [0.4; 3])?;
+//! let point = spec.snap(&Point3::new(3.0, 0.1, 0.5));
+//! let lidar = spec.snap(&Point3::new(0.9, 0.1, 1.8));
+//! let crossed = traverse(point, lidar).count();
+//! assert_eq!(crossed, 8);
+//! # Ok::<(), occlabel_core::Fault>(())
+//! ```
+
+mod aggregated;
+mod boxes;
+pub mod camera;
+mod class;
+mod cloud;
+mod fault;
+mod grid;
+mod instant;
+mod keyframes;
+mod occupancy;
+mod pose;
+mod scene;
+mod taxonomy;
+mod time;
+mod traverse;
+mod walk;
+
+pub use aggregated::{AggregatedScene, BackgroundSweep, DropCounts, ObjectSweep};
+pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
+pub use camera::Camera;
+pub use class::{ClassId, ClassSet};
+pub use cloud::{PointCloud, PointLabel};
+pub use fault::{Fault, printable};
+pub use grid::{GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};
+pub use instant::{Instant, PlacedObject, StandingBox};
+pub use keyframes::{KeyframeSettings, KeyframeSource};
+pub use occupancy::{Evidence, OccupancyLabels, RayCounts, VoxelState, VoxelVote};
+pub use pose::{Pose, RigidMap, slerp};
+pub use scene::{
+    Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, Refusal, Scene, Sweep, SweepHeader,
+};
+pub use taxonomy::{Meaning, Taxonomy, TaxonomyError};
+pub use time::Timestamp;
+pub use traverse::{Traverse, traverse};
+pub use walk::walk;

@@ -1,0 +1,129 @@
+//! A scene: what one drive recorded, in our own terms.
+
+use nalgebra::Point3;
+
+use crate::{BoxTrack, Camera, Fault, PointCloud, PointLabel, Pose, Timestamp};
+
+/// One revolution of one lidar, without its points.
+#[derive(Clone, Debug)]
+pub struct SweepHeader {
+    /// When it was taken.
+    pub time: Timestamp,
+    /// The lidar's name.
+    pub lidar: String,
+    /// The format's own id of the sweep.
+    pub source_id: String,
+    /// The file that holds the points, relative to the log's root.
+    pub file: String,
+    /// The ego vehicle's pose at that time.
+    pub world_from_ego: Pose,
+    /// The lidar's mounting.
+    pub ego_from_lidar: Pose,
+    /// Whether the points carry labels.
+    pub labelled: bool,
+}
+
+impl SweepHeader {
+    /// The lidar's own pose in world at the sweep's time.
+    pub fn world_from_lidar(&self) -> Pose {
+        self.world_from_ego * self.ego_from_lidar
+    }
+}
+
+/// One revolution of one lidar. The cloud stands in the lidar's frame.
+#[derive(Clone, Debug)]
+pub struct Sweep<'a> {
+    /// Its time and poses.
+    pub header: &'a SweepHeader,
+    /// Its points, with their ray origins.
+    pub cloud: PointCloud<PointLabel>,
+}
+
+/// What a camera saw once.
+#[derive(Clone, Debug)]
+pub struct Exposure {
+    /// Index into the scene's cameras.
+    pub camera: usize,
+    /// When it was exposed.
+    pub time: Timestamp,
+    /// Where the camera stood then.
+    pub world_from_camera: Pose,
+}
+
+/// A moment that gets a grid of labels.
+#[derive(Clone, Debug)]
+pub struct Keyframe {
+    /// The name of its output folder.
+    pub token: String,
+    /// The reference sweep's time.
+    pub time: Timestamp,
+    /// Index of the reference sweep.
+    pub sweep: usize,
+    /// At most one exposure of each camera, in order of cameras.
+    pub exposures: Vec<Exposure>,
+}
+
+/// A camera of a scene, under the name of its channel.
+#[derive(Clone, Debug)]
+pub struct NamedCamera {
+    /// The channel.
+    pub name: String,
+    /// Its model, size and masks.
+    pub camera: Camera,
+}
+
+/// One drive: the unit of work and of failure.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Its name.
+    pub name: String,
+    /// Sweeps ordered by (time, lidar name, file).
+    pub sweeps: Vec<SweepHeader>,
+    /// Tracks in order of their ids 1..N.
+    pub tracks: Vec<BoxTrack>,
+    /// Cameras in byte order of their names: bit i of `camera_bits` is the i-th.
+    pub cameras: Vec<NamedCamera>,
+    /// Keyframes in order of time.
+    pub keyframes: Vec<Keyframe>,
+    /// What is odd but can be lived with.
+    pub warnings: Vec<Fault>,
+    /// Records that were refused and left out.
+    pub refused: Vec<Refusal>,
+}
+
+/// A part of a scene that could not be read, and why.
+#[derive(Clone, Debug)]
+pub struct Refusal {
+    /// What is lost by it.
+    pub loss: Loss,
+    /// What was wrong.
+    pub fault: Fault,
+}
+
+/// What a refusal costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loss {
+    /// One annotated box.
+    Annotation,
+    /// One sweep.
+    Sweep,
+    /// One keyframe.
+    Keyframe,
+    /// One camera's image at a keyframe, or the camera.
+    Camera,
+}
+
+impl Scene {
+    /// Whether any sweep carries point labels.
+    pub fn has_point_labels(&self) -> bool {
+        self.sweeps.iter().any(|sweep| sweep.labelled)
+    }
+
+    /// Pose of the reference lidar's frame, its time being the keyframe's.
+    pub fn reference_sweep(&self, keyframe: &Keyframe) -> &SweepHeader {
+        &self.sweeps[keyframe.sweep]
+    }
+}
+
+/// The origin of rays whose lidar says nothing better: the lidar's own.
+pub const LIDAR_ORIGIN: Point3<f64> = Point3::new(0.0, 0.0, 0.0);

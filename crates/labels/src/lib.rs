@@ -1,0 +1,1 @@
+//! Label trees on disk: npz arrays, manifest, atomic writes, resume.

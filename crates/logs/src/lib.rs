@@ -1,0 +1,1 @@
+//! Readers: logged drives to scenes.

@@ -1,0 +1,44 @@
+//! What a reader of any log format gives.
+
+use occlabel_core::{Fault, PointCloud, PointLabel, Scene, SweepHeader};
+
+/// A log on disk, as a source of scenes.
+pub trait SceneSource: Sync {
+    /// The names of the wanted scenes, in the log's own order.
+    fn scene_names(&self) -> Vec<String>;
+
+    /// Everything of a scene but its points.
+    ///
+    /// # Errors
+    /// If the scene cannot be labelled at all. What costs less stands in `refused` of the scene.
+    fn load(&self, scene: &str) -> Result<Scene, Fault>;
+
+    /// The points of a sweep, in the frame of its lidar.
+    ///
+    /// # Errors
+    /// If the sweep's points or labels cannot be read, or do not fit each other.
+    fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault>;
+
+    /// What the format itself says where the configuration says `"auto"`.
+    fn defaults(&self) -> ReaderDefaults;
+}
+
+/// The points of a sweep, and what was odd about them.
+#[derive(Clone, Debug)]
+pub struct SweepPoints {
+    /// The points as logged: nothing dropped.
+    pub cloud: PointCloud<PointLabel>,
+    /// What is odd but can be lived with.
+    pub warnings: Vec<Fault>,
+}
+
+/// A format's own settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReaderDefaults {
+    /// Lower and upper corner of the ego vehicle's body, ego frame, metres.
+    pub ego_box_m: Option<([f64; 3], [f64; 3])>,
+    /// The shipped taxonomy that fits.
+    pub taxonomy: &'static str,
+    /// The lidar that keyframes refer to.
+    pub reference_lidar: String,
+}

@@ -1,0 +1,43 @@
+//! Measure, then judge: count the lidar rays through and into each voxel, then decide what it is.
+//!
+//! Every published rule for free, occupied and unobserved is a few keys of [`RaySettings`] and
+//! [`StateSettings`]; the walk itself never changes. Rays live on an integer lattice, so counts are
+//! the same on every machine and for any number of threads (labels.md section 8).
+//!
+//! ```
+//! use nalgebra::Point3;
+//! use occlabel_core::*;
+//! use occlabel_raycast::{ObjectRays, Outside, RayRules, RaySettings, count};
+//!
+//! let wall = vec![Point3::new(3.5, 0.5, 0.5)];
+//! let cloud = PointCloud::from_one_origin(Point3::new(0.5, 0.5, 0.5), wall, vec![ClassId(0)]);
+//! let scene = AggregatedScene {
+//!     background: vec![BackgroundSweep { time: Timestamp(0), cloud }],
+//!     objects: vec![],
+//!     dropped: DropCounts::default(),
+//! };
+//! let settings = RaySettings {
+//!     outside: Outside::Clip,
+//!     ignore_near_hit_m: 0.0,
+//!     ignore_near_origin_m: 0.0,
+//!     flat_ignore_dz_m: 0.0,
+//!     object_rays: ObjectRays::Own,
+//!     same_time_s: 0.05,
+//! };
+//! let spec = GridSpec::new([0.0; 3], [4.0, 1.0, 1.0], [1.0; 3])?;
+//! let rules = RayRules { settings: &settings, flat: &ClassSet::default() };
+//! let counts = count(&Instant::still(&scene), &spec, &rules, 1);
+//! assert_eq!(counts.crossings.values(), [1, 1, 1, 0]);
+//! assert_eq!(counts.hits.values(), [0, 0, 0, 1]);
+//! # Ok::<(), Fault>(())
+//! ```
+
+mod caster;
+mod classify;
+mod count;
+mod settings;
+mod work;
+
+pub use classify::{Conflict, StateSettings, classify};
+pub use count::count;
+pub use settings::{ObjectRays, Outside, RayRules, RaySettings};

@@ -1,0 +1,257 @@
+//! Class of a voxel (labels.md section 7).
+
+use std::cmp::Reverse;
+
+use occlabel_core::{
+    ClassId, ClassSet, GridSpec, Instant, PlacedObject, RigidMap, TrackId, VoxelGrid, VoxelVote,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::ballot::{Ballot, BallotBox, TrackVote};
+
+/// The `[voxelize]` table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VoteSettings {
+    /// Which points compete.
+    pub vote: Vote,
+}
+
+/// Which points of a voxel compete for its class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Vote {
+    /// All of them.
+    Majority,
+    /// Track points of a mover class alone, where there are any [MobileOcc].
+    MoversFirst,
+}
+
+/// How a voxel's class is decided.
+#[derive(Clone, Copy, Debug)]
+pub struct VoteRules<'a> {
+    /// Which points compete.
+    pub vote: Vote,
+    /// The classes of movers.
+    pub movers: &'a ClassSet,
+    /// `rank[class]`, one per class: on equal votes the lowest wins.
+    pub rank: &'a [u8],
+}
+
+/// The class and instance of every voxel that holds a point; `None` elsewhere.
+///
+/// # Panics
+/// If a point's class has no rank.
+pub fn voxelize(
+    instant: &Instant,
+    spec: &GridSpec,
+    rules: &VoteRules,
+) -> VoxelGrid<Option<VoxelVote>> {
+    let mut ballots = BallotBox::new(spec, rules.rank.len());
+    cast_background(instant, spec, &mut ballots);
+    for object in &instant.objects {
+        cast_object(object, spec, &mut ballots);
+    }
+    let mut votes = VoxelGrid::filled(spec, None);
+    let values = votes.values_mut();
+    ballots.tally(|ballot| values[ballot.flat] = Some(rules.decide(&ballot)));
+    votes
+}
+
+fn cast_background(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
+    let grid_from_world = RigidMap::from(&instant.grid_from_world);
+    for sweep in &instant.background {
+        for (position, class) in sweep.cloud.positions.iter().zip(&sweep.cloud.labels) {
+            if let Some(flat) = spec.flat_of(&grid_from_world.apply(position)) {
+                ballots.cast(flat, *class);
+            }
+        }
+    }
+}
+
+fn cast_object(placed: &PlacedObject, spec: &GridSpec, ballots: &mut BallotBox) {
+    let Some(grid_from_box) = &placed.grid_from_box else { return };
+    let grid_from_box = RigidMap::from(grid_from_box);
+    let (track, cloud) = (placed.object.track, &placed.object.cloud);
+    for (position, class) in cloud.positions.iter().zip(&cloud.labels) {
+        if let Some(flat) = spec.flat_of(&grid_from_box.apply(position)) {
+            ballots.cast_for_track(flat, *class, track);
+        }
+    }
+}
+
+impl VoteRules<'_> {
+    fn decide(&self, ballot: &Ballot) -> VoxelVote {
+        let moving = match self.vote {
+            Vote::Majority => None,
+            Vote::MoversFirst => self.most_votes(&self.mover_counts(ballot.tracks)),
+        };
+        let class = moving.or_else(|| self.most_votes(ballot.counts)).expect("a ballot has votes");
+        VoxelVote { class, instance: leading_track(ballot.tracks, class) }
+    }
+
+    /// Track points of mover classes, by class.
+    fn mover_counts(&self, tracks: &[TrackVote]) -> Vec<u32> {
+        let mut counts = vec![0; self.rank.len()];
+        for vote in tracks.iter().filter(|vote| self.movers.contains(vote.class)) {
+            counts[vote.class.index()] += vote.count;
+        }
+        counts
+    }
+
+    /// The class with most votes, ties by rank; `None` if nobody voted.
+    fn most_votes(&self, counts: &[u32]) -> Option<ClassId> {
+        (0..counts.len())
+            .filter(|&class| counts[class] > 0)
+            .max_by_key(|&class| (counts[class], Reverse(self.rank[class])))
+            .map(|class| ClassId(class as u8))
+    }
+}
+
+/// The track with most points of the class, ties by the lower id.
+fn leading_track(tracks: &[TrackVote], class: ClassId) -> Option<TrackId> {
+    (tracks.iter())
+        .filter(|vote| vote.class == class)
+        .max_by_key(|vote| (vote.count, Reverse(vote.track)))
+        .map(|vote| vote.track)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point3, Vector3};
+    use occlabel_core::{
+        AggregatedScene, BackgroundSweep, Box3, BoxGrowth, DropCounts, GrownBox, ObjectSweep,
+        PointCloud, Pose, Timestamp,
+    };
+    use proptest::prelude::*;
+    use std::cell::Cell;
+
+    const ROAD: u8 = 0;
+    const CAR: u8 = 1;
+    const PERSON: u8 = 2;
+    const RANK: [u8; 3] = [2, 1, 0];
+
+    /// What stands in the one voxel: background classes, and (class, track) of track points.
+    #[derive(Clone, Debug)]
+    struct Held {
+        background: Vec<u8>,
+        tracks: Vec<(u8, u16)>,
+    }
+
+    fn spec() -> GridSpec {
+        GridSpec::new([0.0; 3], [1.0; 3], [1.0; 3]).unwrap()
+    }
+
+    fn cloud(classes: Vec<ClassId>) -> PointCloud<ClassId> {
+        let positions = vec![Point3::new(0.5, 0.5, 0.5); classes.len()];
+        PointCloud::from_one_origin(Point3::origin(), positions, classes)
+    }
+
+    fn object(&(class, track): &(u8, u16)) -> ObjectSweep {
+        let boxed = Box3 { world_from_box: Pose::identity(), size_m: Vector3::repeat(2.0) };
+        let cloud = cloud(vec![ClassId(class)]);
+        ObjectSweep { track: TrackId(track), time: Timestamp(0), boxed, cloud }
+    }
+
+    fn vote(held: &Held, vote: Vote) -> Option<VoxelVote> {
+        let classes = held.background.iter().map(|&class| ClassId(class)).collect();
+        let scene = AggregatedScene {
+            background: vec![BackgroundSweep { time: Timestamp(0), cloud: cloud(classes) }],
+            objects: held.tracks.iter().map(object).collect(),
+            dropped: DropCounts::default(),
+        };
+        let growth = BoxGrowth { scale: 1.0, margin_m: 0.0 };
+        let mut instant = Instant::still(&scene);
+        instant.objects.extend(scene.objects.iter().map(|object| PlacedObject {
+            object,
+            grid_from_seen_box: Pose::identity(),
+            seen: GrownBox::new(&object.boxed.size_m, &growth),
+            grid_from_box: Some(Pose::identity()),
+        }));
+        let movers = [ClassId(CAR), ClassId(PERSON)].into_iter().collect();
+        *voxelize(&instant, &spec(), &VoteRules { vote, movers: &movers, rank: &RANK }).at([0; 3])
+    }
+
+    fn won(class: u8, instance: u16) -> Option<VoxelVote> {
+        let instance = (instance > 0).then_some(TrackId(instance));
+        Some(VoxelVote { class: ClassId(class), instance })
+    }
+
+    #[test]
+    fn section_7_most_points_win() {
+        let held = Held { background: vec![ROAD, ROAD, PERSON], tracks: vec![(CAR, 4)] };
+        assert_eq!(vote(&held, Vote::Majority), won(ROAD, 0));
+        assert_eq!(vote(&Held { background: vec![], tracks: vec![] }, Vote::Majority), None);
+    }
+
+    #[test]
+    fn section_7_ties_go_by_priority_not_by_id() {
+        let held = Held { background: vec![ROAD, CAR, PERSON], tracks: vec![] };
+        assert_eq!(vote(&held, Vote::Majority), won(PERSON, 0));
+    }
+
+    #[test]
+    fn section_7_movers_first_lets_one_track_point_of_a_mover_beat_the_road() {
+        let held = Held { background: vec![ROAD, ROAD, PERSON, PERSON], tracks: vec![(CAR, 9)] };
+        assert_eq!(vote(&held, Vote::MoversFirst), won(CAR, 9));
+        let background_only =
+            Held { background: vec![ROAD, ROAD, PERSON], tracks: vec![(ROAD, 9)] };
+        assert_eq!(vote(&background_only, Vote::MoversFirst), won(ROAD, 9));
+    }
+
+    #[test]
+    fn section_7_the_instance_is_the_leading_track_of_the_winning_class() {
+        let tracks = vec![(CAR, 7), (CAR, 3), (CAR, 3), (PERSON, 1), (CAR, 7)];
+        assert_eq!(vote(&Held { background: vec![], tracks }, Vote::Majority), won(CAR, 3));
+    }
+
+    /// The oracle: count by scanning, in the words of the rule.
+    fn by_counting(held: &Held, vote: Vote) -> Option<VoxelVote> {
+        let is_mover = |class: u8| class != ROAD;
+        let any_mover = held.tracks.iter().any(|(class, _)| is_mover(*class));
+        let points = |class: u8| {
+            let of_tracks = held.tracks.iter().filter(|(c, _)| *c == class).count();
+            match vote {
+                Vote::MoversFirst if any_mover => {
+                    if is_mover(class) {
+                        of_tracks
+                    } else {
+                        0
+                    }
+                }
+                _ => of_tracks + held.background.iter().filter(|c| **c == class).count(),
+            }
+        };
+        let most = (0..3).map(points).max()?;
+        let class = [PERSON, CAR, ROAD].into_iter().find(|&class| points(class) == most)?;
+        let of_track = |id: u16| held.tracks.iter().filter(|t| **t == (class, id)).count();
+        let best = (1..5).map(of_track).max()?;
+        let instance = (1..5).find(|&id| best > 0 && of_track(id) == best).unwrap_or(0);
+        if most == 0 { None } else { won(class, instance) }
+    }
+
+    #[test]
+    fn section_7_the_vote_is_what_counting_says() {
+        let (held_any, tied) = (Cell::new(0), Cell::new(0));
+        let held = (
+            prop::collection::vec(0_u8..3, 0..6),
+            prop::collection::vec((0_u8..3, 1_u16..5), 0..6),
+        );
+        proptest!(ProptestConfig::with_cases(3_000), |((background, tracks) in held)| {
+            let held = Held { background, tracks };
+            for rule in [Vote::Majority, Vote::MoversFirst] {
+                prop_assert_eq!(vote(&held, rule), by_counting(&held, rule));
+            }
+            held_any.set(held_any.get() + usize::from(!held.background.is_empty() && !held.tracks.is_empty()));
+            let count = |c: u8| held.background.iter().filter(|b| **b == c).count();
+            tied.set(tied.get() + usize::from(held.tracks.is_empty() && count(0) == count(1) && count(0) > 0));
+        });
+        assert!(
+            held_any.get() > 1_000 && tied.get() > 20,
+            "{} mixed, {} tied",
+            held_any.get(),
+            tied.get()
+        );
+    }
+}
