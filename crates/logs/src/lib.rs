@@ -1,1 +1,26 @@
 //! Readers: logged drives to scenes.
+//!
+//! A log is somebody else's file, so this crate is the door at which everything is checked. What
+//! stands behind it (a [`Scene`], a point cloud) is in our own frames, units and words, and no stage
+//! asks again. A reader delivers a scene's tables at once but its points sweep by sweep, so that
+//! memory is the caller's to bound. What is wrong comes back as a [`Fault`] that says where; a reader
+//! never decides what to do about it: what can be lived with are warnings, what had to be left out
+//! are refusals of the scene, and only what spoils a scene as a whole is an error.
+//!
+//! ```
+//! use std::path::Path;
+//! use occlabel_logs::NuScenesLog;
+//!
+//! let fault = NuScenesLog::format_defaults(Path::new("no/such/log"), None).unwrap_err();
+//! assert_eq!(fault.rule, "missing-file");
+//! assert!(fault.to_string().starts_with("no/such/log: expected "));
+//! ```
+//!
+//! [`Scene`]: occlabel_core::Scene
+//! [`Fault`]: occlabel_core::Fault
+
+mod nuscenes;
+mod source;
+
+pub use nuscenes::{MissingFile, NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder};
+pub use source::{ReaderDefaults, SceneSource, SweepPoints};

@@ -1,1 +1,37 @@
 //! The order of the stages, and the configuration that drives them.
+//!
+//! [`aggregate_scene`] runs once per scene, [`label_keyframe`] once per keyframe; both read like the
+//! method they implement, one line a stage. All that decides a voxel comes in as [`Rules`], made
+//! from a [`Config`] that was checked at the door.
+//!
+//! ```
+//! use occlabel_pipeline::{Autos, Config, Rules, preset, shipped_taxonomy};
+//!
+//! let autos = Autos {
+//!     ego_box_m: None,
+//!     taxonomy: "occ3d-nuscenes".into(),
+//!     reference_lidar: "LIDAR_TOP".into(),
+//! };
+//! let mut config = Config::parse(preset("precise").unwrap(), "precise")?;
+//! let taxonomy = shipped_taxonomy("occ3d-nuscenes").unwrap()?;
+//! config.resolve(&autos, &taxonomy);
+//! let rules = Rules::new(&config, taxonomy.into())?;
+//! assert_eq!(rules.spec.shape(), [200, 200, 16]);
+//! # Ok::<(), occlabel_core::Fault>(())
+//! ```
+
+mod aggregate_scene;
+mod check;
+mod config;
+mod flow;
+mod label_keyframe;
+mod memory;
+mod presets;
+mod rules;
+
+pub use aggregate_scene::{aggregate_scene, boxes_at};
+pub use config::{Autos, Config, EgoBox, GridFrame, Limit};
+pub use label_keyframe::{Stage, label_keyframe};
+pub use memory::MemoryModel;
+pub use presets::{PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_taxonomy};
+pub use rules::Rules;

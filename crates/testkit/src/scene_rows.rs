@@ -157,15 +157,16 @@ fn labels(drive: &Drive, sweep: usize) -> Lidarseg {
 /// Track after track until the scene's annotations are spent; the last one may leave early.
 fn push_boxes(tables: &mut TableSet, drive: &Drive, counts: &PointCounts) -> io::Result<()> {
     let keyframes = drive.spec.keyframes;
-    for track in 0..drive.annotation_count.div_ceil(keyframes) {
-        let length = keyframes.min(drive.annotation_count - track * keyframes);
+    let starts = (0..drive.annotation_count).step_by(keyframes);
+    starts.enumerate().try_for_each(|(track, spent)| {
+        let length = keyframes.min(drive.annotation_count - spent);
         tables.instance.push(&instance(drive, track, length))?;
-        for (_, slot) in drive.key_slots().take(length) {
-            let points = counts[slot.keyframe][track];
-            tables.sample_annotation.push(&annotation(drive, track, slot, length, points))?;
-        }
-    }
-    Ok(())
+        tables.sample_annotation.extend(
+            drive.key_slots().take(length).map(|(_, slot)| {
+                annotation(drive, track, slot, length, counts[slot.keyframe][track])
+            }),
+        )
+    })
 }
 
 fn instance(drive: &Drive, track: usize, length: usize) -> Instance {

@@ -19,7 +19,7 @@ pub(super) fn evaluate_with_slope(polynomial: &[f64], x: f64) -> (f64, f64) {
 }
 
 /// How far from 0 a polynomial with positive constant term stays positive: its first root in
-/// (0, `upper`), to the last bit, or infinity if it has none there.
+/// (0, `upper`), as sharp as f64 can tell its sign, or infinity if it has none there.
 ///
 /// Between neighbouring roots of its derivative a polynomial is monotone, so a bisection there
 /// misses none.

@@ -1,0 +1,93 @@
+//! Files of a log, and names that may be trusted as theirs.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+use occlabel_core::Fault;
+
+/// A file of points, labels or pixels longer than this is refused.
+const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// Opens a regular file, through symbolic links too; `place` names it in faults.
+///
+/// # Errors
+/// If it is absent (`missing-file`), or cannot be opened.
+pub(super) fn open_file(path: &Path, place: &str) -> Result<File, Fault> {
+    let metadata = fs::metadata(path).map_err(|error| unreadable(place, &error))?;
+    if !metadata.is_file() {
+        return Err(Fault::new("unreadable-file", place, "a file", "something else"));
+    }
+    File::open(path).map_err(|error| unreadable(place, &error))
+}
+
+/// The bytes of a file of the log, at most 1 GiB.
+///
+/// # Errors
+/// If it is absent (`missing-file`), longer, or cannot be read.
+pub(super) fn read_file(root: &Path, name: &str) -> Result<Vec<u8>, Fault> {
+    let file = open_file(&root.join(name), name)?;
+    let mut bytes = Vec::new();
+    let read = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(|error| unreadable(name, &error))?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        let expected = format!("at most {MAX_FILE_BYTES} bytes");
+        return Err(Fault::new("file-size", name, expected, "more"));
+    }
+    Ok(bytes)
+}
+
+/// What an error of the file system says about a file.
+pub(super) fn unreadable(place: &str, error: &io::Error) -> Fault {
+    match error.kind() {
+        io::ErrorKind::NotFound => Fault::new("missing-file", place, "a file", "none"),
+        _ => Fault::new("unreadable-file", place, "a readable file", error.to_string()),
+    }
+}
+
+/// What is wrong with a file's name in a table, if anything: it has to stay below the log's root on
+/// every system, and off the terminal.
+pub(super) fn name_defect(name: &str) -> Option<&'static str> {
+    let drive = name.as_bytes().get(1) == Some(&b':');
+    if name.is_empty() {
+        Some("no name")
+    } else if name.chars().any(char::is_control) {
+        Some("control characters")
+    } else if name.contains('\\') || drive || name.starts_with('/') {
+        Some("an absolute path, a drive or a backslash")
+    } else if name.split('/').any(|part| part == "..") {
+        Some("a way out of the folder")
+    } else {
+        None
+    }
+}
+
+/// Whether a name can be that of an output folder: of letters, digits, `.`, `_`, `-` only.
+pub(super) fn is_folder_name(name: &str) -> bool {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"._-".contains(&byte);
+    !matches!(name, "" | "." | "..") && name.bytes().all(plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fault_36_file_names_stay_below_the_root() {
+        for name in ["samples/LIDAR_TOP/a.pcd.bin", "a", "./a..b/..c", "a/.../b", "été/x y.bin"] {
+            assert_eq!(name_defect(name), None, "{name}");
+        }
+        for name in [
+            "", "/etc/passwd", "../a", "a/..", "a/../b", "C:\\a", "c:a", "a\\b", "\\\\host\\a",
+            "a\0b", "a\u{1b}[31m", "a\nb",
+        ] {
+            assert!(name_defect(name).is_some(), "{name:?}");
+        }
+    }
+
+    #[test]
+    fn fault_36_folder_names_are_plain() {
+        assert!(["scene-0061", "a.b_c", "..."].into_iter().all(is_folder_name));
+        assert!(!["", ".", "..", "a/b", "a b", "é", "a\n", "a\0"].into_iter().any(is_folder_name));
+    }
+}

@@ -1,0 +1,60 @@
+//! Once per scene: every sweep sorted, every point labelled.
+
+use occlabel_aggregate::{TrackBox, accumulate, split_sweep};
+use occlabel_annotate::{BoxSettings, BoxSource, box_at, relabel};
+use occlabel_core::{
+    AggregatedScene, BoxTrack, ClassId, PointCloud, PointLabel, Scene, Sweep, SweepHeader,
+    Timestamp,
+};
+use rayon::prelude::*;
+
+use crate::{Rules, Stage};
+
+/// Reads, sorts, sums and relabels the sweeps of a scene. Parallel over sweeps, then over points.
+///
+/// `read` gives the points of a sweep, or none if the sweep is to be left out; `enter` is told which
+/// stage begins.
+///
+/// # Errors
+/// The first error of `read`, in the order of sweeps.
+pub fn aggregate_scene<E: Send>(
+    scene: &Scene,
+    rules: &Rules,
+    read: impl Fn(&SweepHeader) -> Result<Option<PointCloud<PointLabel>>, E> + Sync,
+    mut enter: impl FnMut(Stage),
+) -> Result<AggregatedScene<ClassId>, E> {
+    enter(Stage::Aggregate);
+    let split_one = |header| -> Result<_, E> {
+        let boxes: Vec<_> = boxes_at(&scene.tracks, header, rules);
+        Ok(read(header)?.map(|cloud| split_sweep(&Sweep { header, cloud }, &boxes, &rules.split)))
+    };
+    let sorted: Vec<_> = scene.sweeps.par_iter().map(split_one).collect();
+    let sorted = sorted.into_iter().collect::<Result<Vec<_>, E>>()?;
+    let accumulated = accumulate(sorted.into_iter().flatten());
+    enter(Stage::Relabel);
+    Ok(relabel(accumulated, &rules.relabel(scene)))
+}
+
+/// The boxes that sort a sweep's points, extrapolated ones included.
+pub fn boxes_at(tracks: &[BoxTrack], header: &SweepHeader, rules: &Rules) -> Vec<TrackBox> {
+    track_boxes(tracks, header.time, &rules.boxes).map(|(boxed, _)| boxed).collect()
+}
+
+/// The boxes of the tracks that stand at a time: annotated or interpolated.
+pub(crate) fn standing_boxes(tracks: &[BoxTrack], time: Timestamp, rules: &Rules) -> Vec<TrackBox> {
+    track_boxes(tracks, time, &rules.boxes)
+        .filter(|(_, source)| *source != BoxSource::Extrapolated)
+        .map(|(boxed, _)| boxed)
+        .collect()
+}
+
+fn track_boxes(
+    tracks: &[BoxTrack],
+    time: Timestamp,
+    settings: &BoxSettings,
+) -> impl Iterator<Item = (TrackBox, BoxSource)> {
+    tracks.iter().filter_map(move |track| {
+        let (boxed, source) = box_at(track, time, settings)?;
+        Some((TrackBox { track: track.id, class: track.class(), boxed }, source))
+    })
+}

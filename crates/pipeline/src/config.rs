@@ -1,0 +1,374 @@
+//! The configuration: every key of labels.md section 14, under its name there.
+
+use occlabel_annotate::{BoxSettings, GhostClasses};
+use occlabel_core::{Fault, GridSpec, KeyframeSettings, Taxonomy};
+use occlabel_occlusion::OcclusionSettings;
+use occlabel_raycast::{RaySettings, StateSettings};
+use occlabel_voxelize::VoteSettings;
+use serde::{Deserialize, Serialize};
+
+use crate::check;
+
+/// All that decides a label.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// Which moments get a grid.
+    pub keyframes: KeyframeSettings,
+    /// Where the grid stands.
+    pub grid: GridTable,
+    /// How boxes are carried between annotations.
+    pub boxes: BoxSettings,
+    /// How sweeps are sorted and summed.
+    pub aggregate: AggregateTable,
+    /// How unlabelled points get a class.
+    pub relabel: RelabelTable,
+    /// How a voxel gets its class.
+    pub voxelize: VoteSettings,
+    /// Which crossings count.
+    pub raycast: RaySettings,
+    /// How counts are judged.
+    pub states: StateSettings,
+    /// What cameras see.
+    pub occlusion: OcclusionSettings,
+    /// What the classes are.
+    pub taxonomy: TaxonomyTable,
+    /// How formats are read; a table for each reader.
+    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
+    pub reader: toml::Table,
+}
+
+/// The `[grid]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GridTable {
+    /// The frame in which the grid stands.
+    pub frame: GridFrame,
+    /// Lower corner, metres.
+    pub min_m: [f64; 3],
+    /// Upper corner, metres.
+    pub max_m: [f64; 3],
+    /// Voxel size, metres.
+    pub voxel_size_m: VoxelSize,
+}
+
+/// A voxel's size: a cube's, or along x, y, z; metres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum VoxelSize {
+    /// The same along all axes.
+    Cube(f64),
+    /// One for each axis.
+    Sides([f64; 3]),
+}
+
+/// The frame in which a keyframe's grid stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GridFrame {
+    /// The reference sweep's ego frame [Occ3D].
+    Ego,
+    /// The reference sweep's lidar frame [SurroundOcc].
+    Lidar,
+}
+
+/// The `[aggregate]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AggregateTable {
+    /// The ego vehicle's body, ego frame.
+    pub ego_box_m: EgoBox,
+    /// Points farther from their lidar are dropped, metres.
+    pub max_range_m: f64,
+    /// Factor on the sides of boxes.
+    pub box_scale: f64,
+    /// Added to the faces of boxes, metres.
+    pub box_margin_m: f64,
+    /// Sweeps at most this far from a keyframe serve it, seconds.
+    pub window_s: f64,
+    /// The same for tracks whose shape changes, seconds.
+    pub deformable_window_s: f64,
+}
+
+/// The ego vehicle's body: `"auto"`, `"none"`, or `{ min, max }` in the ego frame, metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum EgoBox {
+    /// By name.
+    Word(EgoWord),
+    /// By its corners.
+    Corners {
+        /// Lower corner.
+        min: [f64; 3],
+        /// Upper corner.
+        max: [f64; 3],
+    },
+}
+
+/// An ego body by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EgoWord {
+    /// The reader's own.
+    Auto,
+    /// Nothing is dropped.
+    None,
+}
+
+/// The `[relabel]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RelabelTable {
+    /// How many neighbours vote.
+    pub k: usize,
+    /// How far a neighbour may be, metres, or `"none"`.
+    pub max_distance_m: Limit,
+    /// A class name, `"drop"`, or `"taxonomy"`.
+    pub unknown_class: String,
+    /// Which background points are dropped as left-overs.
+    pub drop_ghosts: GhostClasses,
+}
+
+/// A limit, or none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Limit {
+    /// At most this.
+    AtMost(f64),
+    /// Anything goes.
+    Lifted(NoLimit),
+}
+
+/// The word for no limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoLimit {
+    /// Anything goes.
+    None,
+}
+
+/// The `[taxonomy]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaxonomyTable {
+    /// `"auto"`, a shipped taxonomy, or a path.
+    pub file: String,
+}
+
+/// What a reader knows where the configuration says `"auto"`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Autos {
+    /// The ego vehicle's body, ego frame, metres.
+    pub ego_box_m: Option<([f64; 3], [f64; 3])>,
+    /// The shipped taxonomy that fits the format.
+    pub taxonomy: String,
+    /// The lidar that keyframes refer to.
+    pub reference_lidar: String,
+}
+
+impl Config {
+    /// A configuration from the text of a file that states every key.
+    ///
+    /// # Errors
+    /// If it is no TOML, a key is unknown or missing, or a value is impossible.
+    pub fn parse(text: &str, place: &str) -> Result<Self, Fault> {
+        Self::from_layers(place, text, None, &[])
+    }
+
+    /// A configuration from a base that states every key, a file that states some, and settings of
+    /// single keys `table.key=VALUE`, each over the ones before.
+    ///
+    /// # Errors
+    /// As for [`Config::parse`].
+    pub fn from_layers(
+        place: &str,
+        base: &str,
+        file: Option<&str>,
+        settings: &[String],
+    ) -> Result<Self, Fault> {
+        let mut table = parse_table(base, place)?;
+        if let Some(text) = file {
+            overlay(&mut table, parse_table(text, place)?);
+        }
+        for setting in settings {
+            overlay(&mut table, parse_setting(setting)?);
+        }
+        let config: Self = table.try_into().map_err(|error: toml::de::Error| {
+            let found = error.message().trim().to_owned();
+            Fault::new("config", place, "the keys that `occlabel presets precise` prints", found)
+        })?;
+        check::check(&config)?;
+        Ok(config)
+    }
+
+    /// Puts what is meant in place of every `"auto"`.
+    pub fn resolve(&mut self, autos: &Autos, taxonomy: &Taxonomy) {
+        if self.keyframes.reference_lidar == "auto" {
+            self.keyframes.reference_lidar.clone_from(&autos.reference_lidar);
+        }
+        if self.aggregate.ego_box_m == EgoBox::Word(EgoWord::Auto) {
+            self.aggregate.ego_box_m = match autos.ego_box_m {
+                Some((min, max)) => EgoBox::Corners { min, max },
+                None => EgoBox::Word(EgoWord::None),
+            };
+        }
+        if self.relabel.unknown_class == "taxonomy" {
+            let name = taxonomy.unknown.map(|class| taxonomy.names[class.index()].clone());
+            self.relabel.unknown_class = name.unwrap_or_else(|| "drop".into());
+        }
+    }
+
+    /// The shipped taxonomy or the path to read.
+    pub fn taxonomy_file<'a>(&'a self, autos: &'a Autos) -> &'a str {
+        match self.taxonomy.file.as_str() {
+            "auto" => &autos.taxonomy,
+            named => named,
+        }
+    }
+
+    /// The grid.
+    ///
+    /// # Errors
+    /// If it is impossible: see [`GridSpec::new`].
+    pub fn grid_spec(&self) -> Result<GridSpec, Fault> {
+        let grid = &self.grid;
+        GridSpec::new(grid.min_m, grid.max_m, grid.voxel_size_m.sides())
+    }
+}
+
+impl VoxelSize {
+    /// Along x, y, z; metres.
+    pub fn sides(self) -> [f64; 3] {
+        match self {
+            Self::Cube(side) => [side; 3],
+            Self::Sides(sides) => sides,
+        }
+    }
+}
+
+impl Limit {
+    /// The limit, if there is one.
+    pub fn value(self) -> Option<f64> {
+        match self {
+            Self::AtMost(limit) => Some(limit),
+            Self::Lifted(NoLimit::None) => None,
+        }
+    }
+}
+
+fn parse_table(text: &str, place: &str) -> Result<toml::Table, Fault> {
+    text.parse().map_err(|error: toml::de::Error| {
+        let fault = Fault::new("config", place, "TOML", error.message());
+        match error.span() {
+            Some(span) => fault.offset(span.start as u64),
+            None => fault,
+        }
+    })
+}
+
+/// Lays `upper` over `lower`, table by table.
+fn overlay(lower: &mut toml::Table, upper: toml::Table) {
+    for (key, value) in upper {
+        match (lower.get_mut(&key), value) {
+            (Some(toml::Value::Table(under)), toml::Value::Table(over)) if !is_corners(&over) => {
+                overlay(under, over);
+            }
+            (_, value) => {
+                lower.insert(key, value);
+            }
+        }
+    }
+}
+
+/// A pair of corners is a value: it replaces another pair as a whole.
+fn is_corners(table: &toml::Table) -> bool {
+    table.contains_key("min") && table.contains_key("max")
+}
+
+/// `table.key=VALUE` as nested tables. VALUE is TOML, or else a string.
+fn parse_setting(setting: &str) -> Result<toml::Table, Fault> {
+    let usage = || Fault::new("config", "--set", "table.key=VALUE", format!("`{setting}`"));
+    let (path, text) = setting.split_once('=').ok_or_else(usage)?;
+    let path: Vec<&str> = path.split('.').map(str::trim).collect();
+    if path.len() < 2 || path.iter().any(|key| key.is_empty()) {
+        return Err(usage());
+    }
+    let mut value = parse_value(text);
+    for key in path.into_iter().rev() {
+        value = toml::Value::Table(toml::Table::from_iter([(key.to_owned(), value)]));
+    }
+    match value {
+        toml::Value::Table(table) => Ok(table),
+        _ => Err(usage()),
+    }
+}
+
+fn parse_value(text: &str) -> toml::Value {
+    let parsed = format!("value = {text}").parse::<toml::Table>();
+    match parsed {
+        Ok(mut table) if table.len() == 1 => table.remove("value").expect("the one key"),
+        _ => toml::Value::String(text.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preset;
+
+    fn with(settings: &[&str]) -> Result<Config, Fault> {
+        let settings: Vec<String> = settings.iter().map(|s| s.to_string()).collect();
+        Config::from_layers("test", preset("precise").unwrap(), None, &settings)
+    }
+
+    #[test]
+    fn section_14_settings_are_toml_or_else_strings() {
+        let config = with(&[
+            "grid.voxel_size_m=0.2",
+            "grid.min_m=[-40, -40, -1]",
+            "raycast.object_rays=current",
+            "relabel.max_distance_m=none",
+            "taxonomy.file=my/own.toml",
+            "aggregate.ego_box_m={min = [-1,-1,0], max = [1, 1, 2.5]}",
+        ])
+        .unwrap();
+        assert_eq!(config.grid.voxel_size_m.sides(), [0.2; 3]);
+        assert_eq!(config.relabel.max_distance_m.value(), None);
+        assert_eq!(config.taxonomy.file, "my/own.toml");
+        assert!(matches!(config.aggregate.ego_box_m, EgoBox::Corners { .. }));
+    }
+
+    #[test]
+    fn section_14_an_unknown_key_is_an_error_that_names_it() {
+        let fault = with(&["raycast.speed=9"]).unwrap_err().to_string();
+        assert!(fault.contains("speed"), "{fault}");
+        assert!(with(&["magic.key=1"]).is_err() && with(&["raycast=1"]).is_err());
+    }
+
+    #[test]
+    fn section_14_a_file_may_state_some_keys_over_the_base() {
+        let file = "[states]\noccupied_min_hits = 3\n";
+        let config =
+            Config::from_layers("mine", preset("precise").unwrap(), Some(file), &[]).unwrap();
+        assert_eq!((config.states.occupied_min_hits, config.states.free_min_crossings), (3, 1));
+    }
+
+    #[test]
+    fn section_13_no_auto_is_left_once_resolved() {
+        let mut config = with(&[]).unwrap();
+        let taxonomy = crate::shipped_taxonomy("occ3d-nuscenes").unwrap().unwrap();
+        let autos = Autos {
+            ego_box_m: Some(([-1.0; 3], [1.0; 3])),
+            taxonomy: "occ3d-nuscenes".into(),
+            reference_lidar: "TOP".into(),
+        };
+        config.taxonomy.file = config.taxonomy_file(&autos).to_owned();
+        config.resolve(&autos, &taxonomy);
+        let text = serde_json::to_string(&config).unwrap();
+        assert!(
+            !text.contains("\"auto\"") && !text.contains("\"taxonomy\":\"taxonomy\""),
+            "{text}"
+        );
+        assert!(text.contains("\"unknown_class\":\"others\""), "{text}");
+    }
+}

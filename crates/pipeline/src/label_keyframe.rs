@@ -1,0 +1,120 @@
+//! Once per keyframe: from the aggregated scene to the labels.
+
+use nalgebra::Point3;
+use occlabel_aggregate::{Moment, compose};
+use occlabel_core::{
+    AggregatedScene, ClassId, Evidence, GridSpec, Keyframe, OccupancyLabels, Pose, RayCounts,
+    Scene, VoxelGrid, VoxelState, VoxelVote,
+};
+use occlabel_occlusion::{Eye, matter, visible};
+use occlabel_raycast::{classify, count};
+use occlabel_voxelize::voxelize;
+
+use crate::Rules;
+use crate::aggregate_scene::standing_boxes;
+use crate::flow::flow;
+
+/// A stage, as named to whoever watches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Reading sweeps and sorting their points.
+    Aggregate,
+    /// Giving unlabelled points a class.
+    Relabel,
+    /// Placing everything at the keyframe and voting.
+    Voxelize,
+    /// Counting and judging rays.
+    Raycast,
+    /// Casting the cameras' rays.
+    Occlusion,
+    /// Deriving flow and the arrays to write.
+    Finish,
+}
+
+/// The labels of a keyframe.
+///
+/// `shards` is how many threads the rays are shared out over; `enter` is told which stage begins.
+/// Neither shows in the labels.
+pub fn label_keyframe(
+    scene: &Scene,
+    aggregated: &AggregatedScene<ClassId>,
+    keyframe: &Keyframe,
+    rules: &Rules,
+    shards: usize,
+    mut enter: impl FnMut(Stage),
+) -> OccupancyLabels {
+    let (spec, ground) = (&rules.spec, &rules.taxonomy.flat);
+    let reference = scene.reference_sweep(keyframe);
+    let grid_from_world = rules.world_from_grid(reference).inverse();
+
+    enter(Stage::Voxelize);
+    let moment = Moment {
+        time: keyframe.time,
+        grid_from_world,
+        reference_lidar: grid_from_world * reference.world_from_lidar() * Point3::origin(),
+        standing: &standing_boxes(&scene.tracks, keyframe.time, rules),
+    };
+    let instant = compose(aggregated, &moment, &rules.window);
+    let votes = voxelize(&instant, spec, &rules.votes());
+
+    enter(Stage::Raycast);
+    let counts = count(&instant, spec, &rules.rays(), shards);
+    let states = classify(&counts, &votes, ground, &rules.states);
+
+    enter(Stage::Occlusion);
+    let eyes = open_eyes(scene, keyframe, &grid_from_world);
+    let camera_bits = visible(&eyes, spec, &matter(&states, &votes, ground), &rules.occlusion);
+
+    enter(Stage::Finish);
+    let occupied = occupied_votes(&states, &votes);
+    let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
+    arrays(spec, rules.taxonomy.free, &states, &occupied, &counts, camera_bits, flow)
+}
+
+fn open_eyes<'a>(scene: &'a Scene, keyframe: &Keyframe, grid_from_world: &Pose) -> Vec<Eye<'a>> {
+    let eye = |exposure: &occlabel_core::Exposure| Eye {
+        bit: exposure.camera,
+        camera: &scene.cameras[exposure.camera].camera,
+        grid_from_camera: grid_from_world * exposure.world_from_camera,
+    };
+    keyframe.exposures.iter().map(eye).collect()
+}
+
+/// The votes of occupied voxels alone.
+fn occupied_votes(
+    states: &VoxelGrid<VoxelState>,
+    votes: &VoxelGrid<Option<VoxelVote>>,
+) -> VoxelGrid<Option<VoxelVote>> {
+    let mut states = states.values().iter();
+    votes.map(|vote| vote.filter(|_| states.next() == Some(&VoxelState::Occupied)))
+}
+
+/// The arrays of labels.md section 11.
+fn arrays(
+    spec: &GridSpec,
+    free: u8,
+    states: &VoxelGrid<VoxelState>,
+    occupied: &VoxelGrid<Option<VoxelVote>>,
+    counts: &RayCounts,
+    camera_bits: VoxelGrid<u16>,
+    flow: VoxelGrid<[f32; 3]>,
+) -> OccupancyLabels {
+    let is_observed = |state: &VoxelState| u8::from(*state != VoxelState::Unobserved);
+    let seen = states.values().iter().zip(camera_bits.values());
+    let mask_camera = seen.map(|(state, &bits)| is_observed(state) & u8::from(bits != 0)).collect();
+    let saturate = |count: &u32| u16::try_from(*count).unwrap_or(u16::MAX);
+    let instance = |vote: &VoxelVote| vote.instance.map_or(0, |track| track.0);
+    OccupancyLabels {
+        semantics: occupied.map(|vote| vote.map_or(free, |vote| vote.class.0)),
+        mask_lidar: states.map(is_observed),
+        mask_camera: VoxelGrid::from_values(spec, mask_camera),
+        evidence: Evidence {
+            hits: counts.hits.map(saturate),
+            crossings: counts.crossings.map(saturate),
+            state: states.map(|state| *state as u8),
+            instances: occupied.map(|vote| vote.as_ref().map_or(0, instance)),
+            flow,
+            camera_bits,
+        },
+    }
+}

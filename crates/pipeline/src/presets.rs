@@ -1,0 +1,92 @@
+//! The presets and taxonomies that ship with the program.
+
+use occlabel_core::{Fault, Taxonomy};
+
+macro_rules! shipped {
+    ($folder:literal: $($name:literal)*) => {
+        &[$(($name, include_str!(concat!("../../../configs/", $folder, $name, ".toml")))),*]
+    };
+}
+
+/// Presets by name, the default first.
+pub const PRESETS: &[(&str, &str)] = shipped!(
+    "": "precise" "paper" "occ3d-nuscenes" "occ3d-waymo" "occ3d-waymo-text" "panommocc" "mobileocc"
+);
+
+/// Taxonomies by name.
+pub const TAXONOMIES: &[(&str, &str)] =
+    shipped!("taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc");
+
+/// The text of a preset.
+pub fn preset(name: &str) -> Option<&'static str> {
+    find(PRESETS, name)
+}
+
+/// A shipped taxonomy.
+pub fn shipped_taxonomy(name: &str) -> Option<Result<Taxonomy, Fault>> {
+    Some(parse_taxonomy(find(TAXONOMIES, name)?, name))
+}
+
+/// A taxonomy from the text of its file.
+///
+/// # Errors
+/// If the text is no TOML, or the taxonomy contradicts itself.
+pub fn parse_taxonomy(text: &str, place: &str) -> Result<Taxonomy, Fault> {
+    toml::from_str(text).map_err(|error: toml::de::Error| {
+        Fault::new("taxonomy", place, "a taxonomy file", error.message())
+    })
+}
+
+fn find(list: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
+    list.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Config;
+
+    #[test]
+    fn section_13_every_preset_states_every_key() {
+        for (name, text) in PRESETS {
+            Config::parse(text, name).unwrap_or_else(|fault| panic!("{fault}"));
+        }
+        assert_eq!(PRESETS[0].0, "precise");
+    }
+
+    #[test]
+    fn section_7_the_taxonomies_are_as_listed_by_id() {
+        let lists = |name: &str| {
+            let taxonomy = shipped_taxonomy(name).unwrap().unwrap();
+            let ids = |set: &occlabel_core::ClassSet| -> Vec<u8> {
+                (0..=254).filter(|&id| set.contains(occlabel_core::ClassId(id))).collect()
+            };
+            let mut priority: Vec<u8> = (0..taxonomy.class_count() as u8).collect();
+            priority.sort_by_key(|&id| taxonomy.rank[usize::from(id)]);
+            let sets = [&taxonomy.things, &taxonomy.movers, &taxonomy.deformable, &taxonomy.flat];
+            (sets.map(ids), priority, taxonomy.unknown.map(|class| class.0), taxonomy.free)
+        };
+        let (sets, priority, unknown, free) = lists("occ3d-nuscenes");
+        assert_eq!(sets[0], [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
+        assert_eq!(sets[1..], [vec![2, 3, 4, 5, 6, 7, 9, 10], vec![2, 6, 7], vec![11, 12, 13, 14]]);
+        assert_eq!(priority, [7, 2, 6, 8, 1, 4, 10, 9, 3, 5, 15, 16, 11, 13, 12, 14, 0]);
+        assert_eq!((unknown, free), (Some(0), 17));
+
+        let (sets, priority, unknown, free) = lists("occ3d-waymo");
+        assert_eq!(sets[0], [1, 2, 3, 4, 5, 6, 7, 8, 9]);
+        assert_eq!(sets[1..], [vec![1, 2, 4], vec![2, 4], vec![13, 14]]);
+        assert_eq!(priority, [2, 4, 8, 9, 7, 3, 5, 6, 1, 12, 10, 11, 13, 14, 0]);
+        assert_eq!((unknown, free), (Some(0), 23));
+
+        let (sets, priority, unknown, free) = lists("panommocc");
+        assert_eq!(sets, [vec![0, 1, 2, 3], vec![0, 1, 2, 3], vec![1, 2, 3], vec![4, 5, 6]]);
+        assert_eq!(priority, [3, 2, 1, 0, 11, 9, 8, 10, 7, 4, 5, 6]);
+        assert_eq!((unknown, free), (None, 12));
+
+        let (sets, priority, unknown, free) = lists("mobileocc");
+        let riders: Vec<u8> = (11..=18).collect();
+        assert_eq!(sets, [riders.clone(), riders, vec![11, 12, 17, 18], vec![0, 1, 9]]);
+        assert_eq!(priority, [11, 12, 18, 17, 13, 14, 15, 16, 6, 7, 5, 4, 3, 2, 8, 9, 1, 0, 10]);
+        assert_eq!((unknown, free), (None, 255));
+    }
+}

@@ -1,0 +1,138 @@
+//! A configuration bound to a taxonomy: what the stages run by.
+
+use std::sync::Arc;
+
+use nalgebra::Point3;
+use occlabel_aggregate::{SplitSettings, WindowSettings};
+use occlabel_annotate::{BoxSettings, GhostClasses, RelabelSettings};
+use occlabel_core::{BoxGrowth, ClassId, Fault, GridSpec, Pose, Scene, SweepHeader, Taxonomy};
+use occlabel_occlusion::OcclusionSettings;
+use occlabel_raycast::{RayRules, RaySettings, StateSettings};
+use occlabel_voxelize::{Vote, VoteRules};
+
+use crate::config::{EgoBox, RelabelTable};
+use crate::{Config, GridFrame};
+
+/// The settings of every stage, resolved.
+#[derive(Clone, Debug)]
+pub struct Rules {
+    /// The grid.
+    pub spec: GridSpec,
+    /// The frame it stands in.
+    pub frame: GridFrame,
+    /// The classes.
+    pub taxonomy: Arc<Taxonomy>,
+    /// Section 3.
+    pub boxes: BoxSettings,
+    /// Section 4, once per sweep.
+    pub split: SplitSettings,
+    /// Section 4, once per keyframe.
+    pub window: WindowSettings,
+    /// Section 9.
+    pub states: StateSettings,
+    /// Section 10.
+    pub occlusion: OcclusionSettings,
+    relabel: RelabelTable,
+    unknown: Option<ClassId>,
+    vote: Vote,
+    rays: RaySettings,
+}
+
+impl Rules {
+    /// Binds a resolved configuration to its taxonomy.
+    ///
+    /// # Errors
+    /// If the grid is impossible or `unknown_class` names no class.
+    pub fn new(config: &Config, taxonomy: Arc<Taxonomy>) -> Result<Self, Fault> {
+        let aggregate = &config.aggregate;
+        let growth = BoxGrowth { scale: aggregate.box_scale, margin_m: aggregate.box_margin_m };
+        Ok(Self {
+            spec: config.grid_spec()?,
+            frame: config.grid.frame,
+            boxes: config.boxes,
+            split: SplitSettings {
+                ego_box_m: corners(&aggregate.ego_box_m),
+                max_range_m: aggregate.max_range_m,
+                growth,
+            },
+            window: WindowSettings {
+                window_s: aggregate.window_s,
+                deformable_window_s: aggregate.deformable_window_s,
+                deformable: taxonomy.deformable,
+                growth,
+            },
+            states: config.states,
+            occlusion: config.occlusion,
+            relabel: config.relabel.clone(),
+            unknown: unknown_class(&config.relabel.unknown_class, &taxonomy)?,
+            vote: config.voxelize.vote,
+            rays: config.raycast,
+            taxonomy,
+        })
+    }
+
+    /// Section 5, for a scene.
+    pub fn relabel(&self, scene: &Scene) -> RelabelSettings {
+        let ghosts: GhostClasses = self.relabel.drop_ghosts;
+        RelabelSettings {
+            k: self.relabel.k,
+            max_distance_m: self.relabel.max_distance_m.value(),
+            unknown: self.unknown,
+            ghosts: ghosts.of(&self.taxonomy, !scene.tracks.is_empty()),
+        }
+    }
+
+    /// Section 7.
+    pub fn votes(&self) -> VoteRules<'_> {
+        VoteRules { vote: self.vote, movers: &self.taxonomy.movers, rank: &self.taxonomy.rank }
+    }
+
+    /// Section 8.
+    pub fn rays(&self) -> RayRules<'_> {
+        RayRules { settings: &self.rays, flat: &self.taxonomy.flat }
+    }
+
+    /// Where the grid of a keyframe stands, by its reference sweep.
+    pub fn world_from_grid(&self, reference: &SweepHeader) -> Pose {
+        match self.frame {
+            GridFrame::Ego => reference.world_from_ego,
+            GridFrame::Lidar => reference.world_from_lidar(),
+        }
+    }
+
+    /// Refuses a scene that would come out empty: no point label, and no class for such points.
+    ///
+    /// # Errors
+    /// If so, with what to set.
+    pub fn check_labels(&self, scene: &Scene) -> Result<(), Fault> {
+        if scene.has_point_labels() || self.unknown.is_some() {
+            return Ok(());
+        }
+        Err(Fault::new(
+            "no-labels",
+            &scene.name,
+            "point labels, or a class for what has none",
+            "neither",
+        )
+        .hint("name a class with --set relabel.unknown_class=CLASS"))
+    }
+}
+
+fn corners(ego_box: &EgoBox) -> Option<(Point3<f64>, Point3<f64>)> {
+    match ego_box {
+        EgoBox::Corners { min, max } => Some(((*min).into(), (*max).into())),
+        EgoBox::Word(_) => None,
+    }
+}
+
+fn unknown_class(name: &str, taxonomy: &Taxonomy) -> Result<Option<ClassId>, Fault> {
+    match name {
+        "drop" => Ok(None),
+        "taxonomy" => Ok(taxonomy.unknown),
+        name => taxonomy.class_named(name).map(Some).ok_or_else(|| {
+            let expected =
+                format!("\"taxonomy\", \"drop\", or one of {}", taxonomy.names.join(", "));
+            Fault::new("config", "relabel.unknown_class", expected, format!("\"{name}\""))
+        }),
+    }
+}
