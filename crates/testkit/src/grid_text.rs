@@ -52,15 +52,23 @@ impl TextSlice {
 /// the workspace). With `UPDATE_GOLDENS=1` in the environment it writes the file instead.
 #[track_caller]
 pub fn assert_golden(path: impl AsRef<Path>, text: &str) {
-    let path = goldens().join(path);
-    if std::env::var("UPDATE_GOLDENS").is_ok_and(|value| value == "1") {
-        write_golden(&path, text);
+    let update = std::env::var("UPDATE_GOLDENS").is_ok_and(|value| value == "1");
+    assert_same(&goldens().join(path), text, update);
+}
+
+#[track_caller]
+fn assert_same(path: &Path, text: &str, update: bool) {
+    if update {
+        write_golden(path, text);
     }
-    let golden = std::fs::read_to_string(&path).unwrap_or_else(|error| {
-        panic!("{}: {error}; UPDATE_GOLDENS=1 writes it; found:\n{text}", path.display())
-    });
     let name = path.display();
-    assert!(golden == text, "{name}: expected:\n{golden}\nfound:\n{text}\n(UPDATE_GOLDENS=1)");
+    let golden = std::fs::read_to_string(path).unwrap_or_else(|error| {
+        panic!("{name}: {error}; UPDATE_GOLDENS=1 writes it; found:\n{text}")
+    });
+    assert!(
+        golden == text,
+        "{name}: expected:\n{golden}\nfound:\n{text}\n(UPDATE_GOLDENS=1 rewrites it)"
+    );
 }
 
 fn write_golden(path: &Path, text: &str) {
@@ -100,9 +108,29 @@ mod tests {
         parse("..\n...\n");
     }
 
+    fn golden_of(text: &str) -> (tempfile::TempDir, PathBuf) {
+        let directory = tempfile::tempdir().expect("a temporary directory");
+        let path = directory.path().join("folder/golden.txt");
+        assert_same(&path, text, true);
+        (directory, path)
+    }
+
+    #[test]
+    fn a_written_golden_is_the_same() {
+        let (_directory, path) = golden_of("#.\n");
+        assert_same(&path, "#.\n", false);
+    }
+
+    #[test]
+    #[should_panic(expected = "expected:\n#.\n\nfound:\n.#\n")]
+    fn another_golden_shows_both_pictures() {
+        let (_directory, path) = golden_of("#.\n");
+        assert_same(&path, ".#\n", false);
+    }
+
     #[test]
     #[should_panic(expected = "found:\n#\n")]
     fn a_missing_golden_shows_the_picture() {
-        assert_golden("of-the-testkit/there-is-none.txt", "#\n");
+        assert_same(Path::new("there-is-none.txt"), "#\n", false);
     }
 }

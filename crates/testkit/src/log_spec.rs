@@ -53,7 +53,7 @@ impl SweepSlot {
 }
 
 impl LogSpec {
-    /// A log of a few hundred kilobytes: 3 keyframes, 9 sweeps of about 1,100 points.
+    /// A log of a few hundred kilobytes: 3 keyframes, 9 sweeps of about 1,340 points.
     pub fn nano() -> Self {
         Self {
             scenes: 1,
@@ -70,7 +70,8 @@ impl LogSpec {
         }
     }
 
-    /// A scene as large as one of nuScenes: 40 keyframes, 400 sweeps, 34,688 rays each.
+    /// A scene as large as one of nuScenes: 40 keyframes, 400 sweeps of 34,688 rays (about 33,000
+    /// returns).
     pub fn full() -> Self {
         Self {
             keyframes: 40,

@@ -8,8 +8,8 @@ const USAGE: &str = "\
 usage: make-log nano|full|tables --output DIR [options]
 
   nano      3 keyframes, a few hundred kilobytes (the fixture in tests/fixtures/nano)
-  full      40 keyframes, 400 sweeps of some 34,000 points
-  tables    tables as large as nuScenes' trainval; one scene (scene-0426) has its points
+  full      40 keyframes, 400 sweeps of some 33,000 points, 270 MB
+  tables    tables as large as nuScenes' trainval; 870 MB; scene-0426 has its points
 
   --scenes N        number of scenes (nano, full: each with points)
   --keyframes N     keyframes per scene
