@@ -1,1 +1,68 @@
-//! The occlabel program: arguments, progress, exit codes.
+//! The `occlabel` program: arguments, progress, exit codes.
+//!
+//! This is the edge: clocks, threads, signals, files and terminals live here, so that the stages can
+//! be values in and values out. Results go to stdout, all else to stderr, and how a run ended is its
+//! exit code: 0 complete, 1 failed, 2 usage or configuration, 3 finished with something skipped or
+//! degraded, 130 interrupted.
+//!
+//! ```
+//! use std::process::ExitCode;
+//!
+//! assert_eq!(occlabel_cli::run(["occlabel", "presets", "precise"]), ExitCode::SUCCESS);
+//! ```
+
+mod args;
+mod completions;
+mod console;
+mod demo;
+mod exit;
+mod input;
+mod inspect;
+mod interrupt;
+mod label;
+mod presets;
+mod progress;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Cli, Command};
+use crate::console::Console;
+use crate::exit::{Outcome, Stop};
+
+/// Runs the program on the arguments of the process.
+pub fn main() -> ExitCode {
+    run(std::env::args_os())
+}
+
+/// Runs the program on these arguments, its own name first.
+pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(usage) => {
+            let _ = usage.print();
+            return ExitCode::from(usage.exit_code() as u8);
+        }
+    };
+    let console = Console { format: cli.log_format, quiet: cli.quiet };
+    match dispatch(&cli.command, &console) {
+        Ok(outcome) => outcome.into(),
+        Err(stop) => {
+            stop.faults().iter().for_each(|fault| console.error(fault));
+            ExitCode::from(stop.code())
+        }
+    }
+}
+
+fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
+    match command {
+        Command::Demo(args) => demo::run(args, console),
+        Command::Label(args) => label::run(args, console),
+        Command::Inspect(args) => inspect::run(args, console),
+        Command::Presets { name } => presets::run(name.as_deref(), console),
+        Command::Completions { shell } => completions::run(shell),
+        Command::Man => completions::man(),
+    }
+}

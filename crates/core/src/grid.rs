@@ -258,6 +258,20 @@ impl<T> VoxelGrid<T> {
         VoxelGrid { shape: self.shape, values: self.values.iter().map(f).collect() }
     }
 
+    /// A grid of what `f` makes of each value and the other grid's value there.
+    ///
+    /// # Panics
+    /// If the grids differ in shape.
+    pub fn zip_map<U, V>(
+        &self,
+        other: &VoxelGrid<U>,
+        mut f: impl FnMut(&T, &U) -> V,
+    ) -> VoxelGrid<V> {
+        assert_eq!(self.shape, other.shape, "grids of one shape");
+        let pairs = self.values.iter().zip(&other.values);
+        VoxelGrid { shape: self.shape, values: pairs.map(|(a, b)| f(a, b)).collect() }
+    }
+
     /// The value of a voxel in the grid, by its indices.
     pub fn at(&self, [x, y, z]: [usize; 3]) -> &T {
         &self.values[(x * self.shape[1] + y) * self.shape[2] + z]

@@ -1,1 +1,69 @@
-//! Label trees on disk: npz arrays, manifest, atomic writes, resume.
+//! Label trees on disk: npz arrays, a manifest, atomic writes, resume.
+//!
+//! A tree is read by others, in other languages, years later, and is written by runs that get
+//! killed. So a file is either there, whole and under its name, or it is not there: everything is
+//! written beside its place and renamed (`atomic`). The data come first, then a line in the journal
+//! that says so, and the manifest last; whoever finds a manifest finds all that it lists. The same
+//! labels give the same bytes, so that a tree can be compared by hash. And no name that a log brings
+//! along leads out of the tree: a path is a [`TreePath`] or it is no path.
+//!
+//! ```
+//! use occlabel_core::{Evidence, GridSpec, OccupancyLabels, VoxelGrid};
+//! use occlabel_labels::{LabelTree, TreePath, WriterLock, labels_npz, read_labels};
+//!
+//! let spec = GridSpec::new([0.0; 3], [4.0, 4.0, 2.0], [1.0; 3])?;
+//! let labels = OccupancyLabels {
+//!     semantics: VoxelGrid::filled(&spec, 17),
+//!     mask_lidar: VoxelGrid::filled(&spec, 1),
+//!     mask_camera: VoxelGrid::filled(&spec, 0),
+//!     evidence: Evidence {
+//!         hits: VoxelGrid::filled(&spec, 0),
+//!         crossings: VoxelGrid::filled(&spec, 3),
+//!         state: VoxelGrid::filled(&spec, 1),
+//!         instances: VoxelGrid::filled(&spec, 0),
+//!         flow: VoxelGrid::filled(&spec, [0.0; 3]),
+//!         camera_bits: VoxelGrid::filled(&spec, 0),
+//!     },
+//! };
+//!
+//! let folder = tempfile::tempdir().unwrap();
+//! let tree = LabelTree::new(folder.path());
+//! let lock = WriterLock::of_scene(&tree, "scene-0061")?;
+//! let record = tree.write(&TreePath::labels("scene-0061", "3e8750f3")?, &labels_npz(&labels))?;
+//! assert_eq!(record.path.as_str(), "gts/scene-0061/3e8750f3/labels.npz");
+//!
+//! let read = read_labels(&tree.place(&record.path), &spec)?;
+//! assert_eq!(read.semantics, labels.semantics);
+//! # drop(lock);
+//! # Ok::<(), occlabel_core::Fault>(())
+//! ```
+
+mod atomic;
+mod differences;
+mod earlier;
+mod files;
+mod inputs;
+mod journal;
+mod json;
+mod lock;
+mod manifest;
+mod npz;
+mod read;
+mod run;
+mod run_files;
+mod tree;
+
+pub use atomic::{create_dir, write_file};
+pub use files::{FileRecord, hash_files};
+pub use inputs::{InputMark, InputRecord, inputs_hash};
+pub use journal::{Journal, JournalEntry};
+pub use json::json_hash;
+pub use lock::WriterLock;
+pub use manifest::{
+    ClassRecord, GridRecord, Manifest, Program, SceneRecord, TaxonomyRecord, TrackRecord,
+};
+pub use npz::{evidence_npz, labels_npz};
+pub use read::{LabelArrays, read_evidence, read_labels};
+pub use run::{Begun, RESUME_DIFFERS, Resume, RunRecord, begin};
+pub use run_files::RunFiles;
+pub use tree::{LabelTree, TreePath};

@@ -7,6 +7,12 @@ pub trait SceneSource: Sync {
     /// The names of the wanted scenes, in the log's own order.
     fn scene_names(&self) -> Vec<String>;
 
+    /// The files of tables that were read, relative to the log's root.
+    fn tables(&self) -> Vec<String>;
+
+    /// The files of a sweep, its points first, relative to the log's root.
+    fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String>;
+
     /// Everything of a scene but its points.
     ///
     /// # Errors

@@ -66,10 +66,8 @@ pub fn matter(
     votes: &VoxelGrid<Option<VoxelVote>>,
     flat: &ClassSet,
 ) -> VoxelGrid<Matter> {
-    assert_eq!(states.shape(), votes.shape(), "states and votes of one grid");
-    let mut votes = votes.values().iter();
-    states.map(|state| match (state, votes.next()) {
-        (VoxelState::Occupied, Some(Some(vote))) if flat.contains(vote.class) => Matter::Ground,
+    states.zip_map(votes, |state, vote| match (state, vote) {
+        (VoxelState::Occupied, Some(vote)) if flat.contains(vote.class) => Matter::Ground,
         (VoxelState::Occupied, _) => Matter::Solid,
         _ => Matter::Air,
     })

@@ -356,7 +356,8 @@ mod tests {
     #[test]
     fn section_13_no_auto_is_left_once_resolved() {
         let mut config = with(&[]).unwrap();
-        let taxonomy = crate::shipped_taxonomy("occ3d-nuscenes").unwrap().unwrap();
+        let text = crate::shipped_taxonomy("occ3d-nuscenes").unwrap();
+        let taxonomy = crate::parse_taxonomy(text, "test").unwrap();
         let autos = Autos {
             ego_box_m: Some(([-1.0; 3], [1.0; 3])),
             taxonomy: "occ3d-nuscenes".into(),

@@ -3,8 +3,8 @@
 use nalgebra::Point3;
 use occlabel_aggregate::{Moment, compose};
 use occlabel_core::{
-    AggregatedScene, ClassId, Evidence, GridSpec, Keyframe, OccupancyLabels, Pose, RayCounts,
-    Scene, VoxelGrid, VoxelState, VoxelVote,
+    AggregatedScene, ClassId, Evidence, Keyframe, OccupancyLabels, Pose, RayCounts, Scene,
+    VoxelGrid, VoxelState, VoxelVote,
 };
 use occlabel_occlusion::{Eye, matter, visible};
 use occlabel_raycast::{classify, count};
@@ -68,7 +68,7 @@ pub fn label_keyframe(
     enter(Stage::Finish);
     let occupied = occupied_votes(&states, &votes);
     let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
-    arrays(spec, rules.taxonomy.free, &states, &occupied, &counts, camera_bits, flow)
+    arrays(rules.taxonomy.free, &states, &occupied, &counts, camera_bits, flow)
 }
 
 fn open_eyes<'a>(scene: &'a Scene, keyframe: &Keyframe, grid_from_world: &Pose) -> Vec<Eye<'a>> {
@@ -85,13 +85,11 @@ fn occupied_votes(
     states: &VoxelGrid<VoxelState>,
     votes: &VoxelGrid<Option<VoxelVote>>,
 ) -> VoxelGrid<Option<VoxelVote>> {
-    let mut states = states.values().iter();
-    votes.map(|vote| vote.filter(|_| states.next() == Some(&VoxelState::Occupied)))
+    states.zip_map(votes, |state, vote| vote.filter(|_| *state == VoxelState::Occupied))
 }
 
 /// The arrays of labels.md section 11.
 fn arrays(
-    spec: &GridSpec,
     free: u8,
     states: &VoxelGrid<VoxelState>,
     occupied: &VoxelGrid<Option<VoxelVote>>,
@@ -100,14 +98,13 @@ fn arrays(
     flow: VoxelGrid<[f32; 3]>,
 ) -> OccupancyLabels {
     let is_observed = |state: &VoxelState| u8::from(*state != VoxelState::Unobserved);
-    let seen = states.values().iter().zip(camera_bits.values());
-    let mask_camera = seen.map(|(state, &bits)| is_observed(state) & u8::from(bits != 0)).collect();
     let saturate = |count: &u32| u16::try_from(*count).unwrap_or(u16::MAX);
     let instance = |vote: &VoxelVote| vote.instance.map_or(0, |track| track.0);
     OccupancyLabels {
         semantics: occupied.map(|vote| vote.map_or(free, |vote| vote.class.0)),
         mask_lidar: states.map(is_observed),
-        mask_camera: VoxelGrid::from_values(spec, mask_camera),
+        mask_camera: states
+            .zip_map(&camera_bits, |state, &bits| is_observed(state) & u8::from(bits != 0)),
         evidence: Evidence {
             hits: counts.hits.map(saturate),
             crossings: counts.crossings.map(saturate),

@@ -5,7 +5,7 @@
 //! from a [`Config`] that was checked at the door.
 //!
 //! ```
-//! use occlabel_pipeline::{Autos, Config, Rules, preset, shipped_taxonomy};
+//! use occlabel_pipeline::{Autos, Config, Rules, parse_taxonomy, preset, shipped_taxonomy};
 //!
 //! let autos = Autos {
 //!     ego_box_m: None,
@@ -13,7 +13,8 @@
 //!     reference_lidar: "LIDAR_TOP".into(),
 //! };
 //! let mut config = Config::parse(preset("precise").unwrap(), "precise")?;
-//! let taxonomy = shipped_taxonomy("occ3d-nuscenes").unwrap()?;
+//! let text = shipped_taxonomy("occ3d-nuscenes").unwrap();
+//! let taxonomy = parse_taxonomy(text, "occ3d-nuscenes")?;
 //! config.resolve(&autos, &taxonomy);
 //! let rules = Rules::new(&config, taxonomy.into())?;
 //! assert_eq!(rules.spec.shape(), [200, 200, 16]);

@@ -37,13 +37,10 @@ pub fn classify(
     flat: &ClassSet,
     settings: &StateSettings,
 ) -> VoxelGrid<VoxelState> {
-    assert_eq!(counts.hits.shape(), votes.shape(), "counts and votes of one grid");
-    let mut states = votes.map(|_| VoxelState::Unobserved);
-    let evidence = counts.hits.values().iter().zip(counts.crossings.values()).zip(votes.values());
-    for (state, ((&hits, &crossings), vote)) in states.values_mut().iter_mut().zip(evidence) {
-        *state = judge(hits, crossings, vote.as_ref(), flat, settings);
-    }
-    states
+    let pairs = counts.hits.zip_map(&counts.crossings, |&hits, &crossings| (hits, crossings));
+    pairs.zip_map(votes, |&(hits, crossings), vote| {
+        judge(hits, crossings, vote.as_ref(), flat, settings)
+    })
 }
 
 fn judge(

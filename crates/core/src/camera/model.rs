@@ -20,6 +20,17 @@ pub enum CameraModel {
 }
 
 impl CameraModel {
+    /// The model's name, as logs write it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Pinhole(_) => "pinhole",
+            Self::BrownConrady(_) => "brown-conrady",
+            Self::KannalaBrandt(_) => "kannala-brandt",
+            Self::Mei(_) => "mei",
+            Self::Ocam(_) => "ocam",
+        }
+    }
+
     /// The continuous pixel of a point in the camera frame; pixel (i, j) covers [i, i+1) x [j,
     /// j+1).
     ///

@@ -78,8 +78,18 @@ mod tests {
             assert_eq!(name_defect(name), None, "{name}");
         }
         for name in [
-            "", "/etc/passwd", "../a", "a/..", "a/../b", "C:\\a", "c:a", "a\\b", "\\\\host\\a",
-            "a\0b", "a\u{1b}[31m", "a\nb",
+            "",
+            "/etc/passwd",
+            "../a",
+            "a/..",
+            "a/../b",
+            "C:\\a",
+            "c:a",
+            "a\\b",
+            "\\\\host\\a",
+            "a\0b",
+            "a\u{1b}[31m",
+            "a\nb",
         ] {
             assert!(name_defect(name).is_some(), "{name:?}");
         }

@@ -54,7 +54,10 @@ fn folded(warnings: Vec<Fault>) -> Vec<Fault> {
 fn counted(first: Fault, records: usize) -> Fault {
     match records {
         1 => first,
-        _ => Fault { found: format!("{}, the first of {records} such records", first.found), ..first },
+        _ => Fault {
+            found: format!("{}, the first of {records} such records", first.found),
+            ..first
+        },
     }
 }
 
@@ -72,7 +75,10 @@ mod tests {
         notes.warn(warning("one", "x"));
         let (warnings, _) = notes.finish();
         assert_eq!(warnings.len(), 2);
-        assert_eq!(warnings[0].to_string(), "t (x): expected a, found b, the first of 3 such records");
+        assert_eq!(
+            warnings[0].to_string(),
+            "t (x): expected a, found b, the first of 3 such records"
+        );
         assert_eq!(warnings[1], warning("one", "x"));
     }
 }

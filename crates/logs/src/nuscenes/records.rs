@@ -273,8 +273,14 @@ mod tests {
         tells(" nonsense", "t.json (at byte 1): expected an array of records, found `n`");
         tells("{\"a\":1}", "t.json (at byte 0): expected an array of records, found `{`");
         tells("[1]", "t.json (at byte 1): expected an object or `]`, found `1`");
-        tells("[{\"a\":", "t.json (at byte 1): expected a record that ends, found the end of the file");
-        tells("[{}", "t.json (at byte 3): expected `,` or `]` after a record, found the end of the file");
+        tells(
+            "[{\"a\":",
+            "t.json (at byte 1): expected a record that ends, found the end of the file",
+        );
+        tells(
+            "[{}",
+            "t.json (at byte 3): expected `,` or `]` after a record, found the end of the file",
+        );
         tells("[{}{}]", "t.json (at byte 3): expected `,` or `]` after a record, found `{`");
         tells("[{},]", "t.json (at byte 4): expected an object after `,`, found `]`");
         tells("[{}]x", "t.json (at byte 4): expected nothing after the array, found `x`");
@@ -295,19 +301,20 @@ mod tests {
             {"g":-1.5e3}]"#;
         let (good, bad) = (Cell::new(0), Cell::new(0));
         let bytes = || prop_oneof![Just(b'"'), Just(b'\\'), Just(b'}'), Just(b']'), any::<u8>()];
-        let edits = proptest::collection::vec((0..table.len(), bytes()), 1..4);
-        proptest!(ProptestConfig::with_cases(4000), |(edits in edits, end in 1..=table.len())| {
+        let edits = proptest::collection::vec((0..table.len(), bytes()), 0..3);
+        let ends = prop_oneof![2 => Just(table.len()), 1 => 1..table.len()];
+        proptest!(ProptestConfig::with_cases(4000), |(edits in edits, end in ends)| {
             let mut mutated = table.as_bytes().to_vec();
             for (at, byte) in edits {
                 mutated[at] = byte;
             }
-            mutated.truncate(end.max(table.len() / 2));
+            mutated.truncate(end);
             let (fine, coarse) = (split(&mutated, 3), split(&mutated, 4096));
             prop_assert_eq!(&fine, &coarse);
             let seen = if fine.is_ok() { &good } else { &bad };
             seen.set(seen.get() + 1);
         });
         assert_eq!(good.get() + bad.get(), 4000);
-        assert!(good.get() > 20 && bad.get() > 1000, "{} good, {} bad", good.get(), bad.get());
+        assert!(good.get() > 500 && bad.get() > 1000, "{} good, {} bad", good.get(), bad.get());
     }
 }

@@ -1,6 +1,7 @@
 //! The rows of a table that are wanted.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io::BufReader;
 use std::ops::Deref;
 use std::path::Path;
@@ -52,7 +53,11 @@ impl<T: Table> Row<T> {
         expected: impl Into<String>,
         found: impl Into<String>,
     ) -> Fault {
-        let fault = Fault::new(rule, T::FILE, expected, found);
+        self.located(Fault::new(rule, T::FILE, expected, found))
+    }
+
+    /// A fault of the table as one of this row.
+    pub(super) fn located(&self, fault: Fault) -> Fault {
         fault.record(self.token.to_string()).offset(self.offset)
     }
 
@@ -65,10 +70,13 @@ impl<T: Table> Row<T> {
         rows: &'a HashMap<Token, Row<U>>,
         token: &Token,
     ) -> Result<&'a Row<U>, Fault> {
-        let locate =
-            || dangling::<T, U>(token).record(self.token.to_string()).offset(self.offset);
-        rows.get(token).ok_or_else(locate)
+        rows.get(token).ok_or_else(|| self.located(dangling::<T, U>(token)))
     }
+}
+
+/// Another row of table `T` has the same token.
+pub(super) fn repeated<T: Table>() -> Fault {
+    Fault::new("duplicate-token", T::FILE, "one row a token", "another one")
 }
 
 /// A row of table `T` names a row of table `U` that is not there.
@@ -92,11 +100,11 @@ pub(super) struct Head {
 ///
 /// # Errors
 /// If there is no such file, it is no array of objects, or a row lacks a field or has one of another
-/// type; or what `wanted` says of a row.
+/// type; or what `wanted` and `keep` say of a row.
 pub(super) fn read_table<T: Table>(
     folder: &Path,
     mut wanted: impl FnMut(&Head) -> Result<bool, Fault>,
-    mut keep: impl FnMut(Row<T>),
+    mut keep: impl FnMut(Row<T>) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let path = folder.join(T::FILE);
     let file = open_file(&path, &path.to_string_lossy())?;
@@ -107,7 +115,7 @@ pub(super) fn read_table<T: Table>(
         let locate = |fault: Fault| fault.record(head.token.to_string()).offset(offset);
         if wanted(&head).map_err(locate)? {
             let fields = parse::<T, T>(&record, Some(&head.token))?;
-            keep(Row { token: head.token, offset, fields });
+            keep(Row { token: head.token, offset, fields })?;
         }
     }
     Ok(())
@@ -122,24 +130,15 @@ pub(super) fn read_keyed<T: Table>(
     mut wanted: impl FnMut(&Token) -> bool,
 ) -> Result<HashMap<Token, Row<T>>, Fault> {
     let mut rows = HashMap::new();
-    let mut repeated = None;
-    read_table::<T>(
-        folder,
-        |head| Ok(wanted(&head.token)),
-        |row| {
-            let first = rows.get(&row.token).map(|first: &Row<T>| first.offset);
-            if let Some(first) = first {
-                repeated.get_or_insert(duplicate(&row, first));
-            }
-            rows.insert(row.token.clone(), row);
-        },
-    )?;
-    repeated.map_or(Ok(rows), Err)
-}
-
-/// Two rows of a table have one token.
-pub(super) fn duplicate<T: Table>(row: &Row<T>, first: u64) -> Fault {
-    row.fault("duplicate-token", "one row a token", format!("another one at byte {first}"))
+    let keep = |row: Row<T>| match rows.entry(row.token.clone()) {
+        Entry::Vacant(entry) => {
+            entry.insert(row);
+            Ok(())
+        }
+        Entry::Occupied(_) => Err(row.located(repeated::<T>())),
+    };
+    read_table(folder, |head| Ok(wanted(&head.token)), keep)?;
+    Ok(rows)
 }
 
 /// Reads fields of a record of table `T`, bare `NaN` and `Infinity` as `null`.

@@ -5,14 +5,14 @@ use std::path::Path;
 
 use occlabel_core::Fault;
 
+use super::files::is_folder_name;
 use super::label_files::{LabelFiles, read_label_files};
 use super::names::{nearest_names, quoted};
-use super::files::is_folder_name;
 use super::rows::{
     CalibratedSensor, Category, EgoPose, Instance, Sample, SampleAnnotation, SampleData, SceneRow,
     Sensor,
 };
-use super::table::{Row, Table, dangling, duplicate, read_keyed, read_table};
+use super::table::{Head, Row, Table, dangling, read_keyed, read_table, repeated};
 use super::token::Token;
 
 /// The rows that belong to one scene.
@@ -26,6 +26,13 @@ pub(super) struct SceneRows {
     pub(super) captures: Vec<Row<SampleData>>,
     /// Its boxes.
     pub(super) annotations: Vec<Row<SampleAnnotation>>,
+}
+
+impl SceneRows {
+    fn named(name: &str) -> Self {
+        let (samples, captures, annotations) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name: name.to_owned(), samples, captures, annotations }
+    }
 }
 
 /// The wanted scenes' rows, and the rows that these name.
@@ -69,6 +76,12 @@ impl Tables {
     pub(super) fn scene(&self, name: &str) -> Option<&SceneRows> {
         self.scenes.iter().find(|scene| scene.name == name)
     }
+
+    /// The name of the scene that a sweep belongs to.
+    pub(super) fn scene_of(&self, sweep: &Token) -> Option<&str> {
+        let holds = |scene: &&SceneRows| scene.captures.iter().any(|row| row.token == *sweep);
+        self.scenes.iter().find(holds).map(|scene| scene.name.as_str())
+    }
 }
 
 fn read_scenes(
@@ -76,7 +89,14 @@ fn read_scenes(
     wanted: Option<&BTreeSet<String>>,
 ) -> Result<(Vec<SceneRows>, SceneOf), Fault> {
     let mut rows: Vec<Row<SceneRow>> = Vec::new();
-    read_table(folder, |_| Ok(true), |row| rows.push(row))?;
+    read_table(
+        folder,
+        |_| Ok(true),
+        |row| {
+            rows.push(row);
+            Ok(())
+        },
+    )?;
     check_wanted(&rows, wanted)?;
     let is_wanted = |name: &String| wanted.is_none_or(|wanted| wanted.contains(name));
     let (mut scenes, mut scene_of, mut names) = (Vec::new(), SceneOf::new(), HashSet::new());
@@ -86,10 +106,9 @@ fn read_scenes(
             check_name(&row, names.insert(row.name.clone()))?;
             scenes.push(SceneRows::named(&row.name));
         }
-        if scene_of.contains_key(&row.token) {
-            return Err(row.fault("duplicate-token", "one row a token", "another one"));
+        if scene_of.insert(row.token.clone(), place).is_some() {
+            return Err(row.located(repeated::<SceneRow>()));
         }
-        scene_of.insert(row.token, place);
     }
     Ok((scenes, scene_of))
 }
@@ -120,14 +139,99 @@ fn read_samples(
     scenes: &mut [SceneRows],
 ) -> Result<SceneOf, Fault> {
     let mut scene_of_sample = SceneOf::new();
-    let mut repeated = None;
-    read_table::<Sample>(
-        folder,
-        |_| Ok(true),
-        |row| {
-            let _ = (&row, &mut repeated, scene_of, &mut *scenes, &mut scene_of_sample);
-            repeated = Some(());
-        },
-    )?;
+    let wanted = |head: &Head| {
+        let scene = place::<Sample, SceneRow>(scene_of, head.scene_token.as_ref())?;
+        match scene_of_sample.insert(head.token.clone(), scene) {
+            Some(_) => Err(repeated::<Sample>()),
+            None => Ok(scene.is_some()),
+        }
+    };
+    read_table(folder, wanted, |row: Row<Sample>| {
+        if let Some(&Some(scene)) = scene_of.get(&row.scene_token) {
+            scenes[scene].samples.push(row);
+        }
+        Ok(())
+    })?;
     Ok(scene_of_sample)
+}
+
+/// Gives the wanted scenes their sweeps and images, but nothing of the `unused` calibrations.
+fn read_captures(
+    folder: &Path,
+    scene_of: &SceneOf,
+    unused: &HashSet<Token>,
+    scenes: &mut [SceneRows],
+) -> Result<(), Fault> {
+    let is_used = |head: &Head| {
+        head.calibrated_sensor_token.as_ref().is_none_or(|token| !unused.contains(token))
+    };
+    let wanted = |head: &Head| {
+        let scene = place::<SampleData, Sample>(scene_of, head.sample_token.as_ref())?;
+        Ok(scene.is_some() && is_used(head))
+    };
+    read_table(folder, wanted, |row: Row<SampleData>| {
+        if let Some(&Some(scene)) = scene_of.get(&row.sample_token) {
+            scenes[scene].captures.push(row);
+        }
+        Ok(())
+    })
+}
+
+/// Gives the wanted scenes their boxes.
+fn read_annotations(
+    folder: &Path,
+    scene_of: &SceneOf,
+    scenes: &mut [SceneRows],
+) -> Result<(), Fault> {
+    let wanted = |head: &Head| {
+        let scene = place::<SampleAnnotation, Sample>(scene_of, head.sample_token.as_ref())?;
+        Ok(scene.is_some())
+    };
+    read_table(folder, wanted, |row: Row<SampleAnnotation>| {
+        if let Some(&Some(scene)) = scene_of.get(&row.sample_token) {
+            scenes[scene].annotations.push(row);
+        }
+        Ok(())
+    })
+}
+
+/// The scene that a row of table `T` belongs to by the row of table `U` that it names.
+fn place<T: Table, U: Table>(
+    scene_of: &SceneOf,
+    token: Option<&Token>,
+) -> Result<Option<usize>, Fault> {
+    let named = |token| scene_of.get(token).copied().ok_or_else(|| dangling::<T, U>(token));
+    match token {
+        Some(token) => named(token),
+        None => Err(Fault::new("table-record", T::FILE, format!("a token of {}", U::FILE), "none")),
+    }
+}
+
+/// Calibrations of sensors that are neither lidars nor cameras.
+fn other_sensors(
+    sensors: &HashMap<Token, Row<Sensor>>,
+    calibrations: &HashMap<Token, Row<CalibratedSensor>>,
+) -> HashSet<Token> {
+    let is_other = |calibration: &&Row<CalibratedSensor>| {
+        let sensor = sensors.get(&calibration.sensor_token);
+        sensor.is_some_and(|sensor| !matches!(sensor.modality.as_str(), "lidar" | "camera"))
+    };
+    calibrations.values().filter(is_other).map(|row| row.token.clone()).collect()
+}
+
+/// The ego poses that sweeps and images of the wanted scenes name.
+fn read_poses(folder: &Path, scenes: &[SceneRows]) -> Result<HashMap<Token, Row<EgoPose>>, Fault> {
+    let captures = scenes.iter().flat_map(|scene| &scene.captures);
+    let named: HashSet<&Token> = captures.map(|capture| &capture.ego_pose_token).collect();
+    read_keyed(folder, |token| named.contains(token))
+}
+
+/// The tracks that boxes of the wanted scenes name.
+fn read_instances(
+    folder: &Path,
+    scenes: &[SceneRows],
+) -> Result<HashMap<Token, Row<Instance>>, Fault> {
+    let annotations = scenes.iter().flat_map(|scene| &scene.annotations);
+    let named: HashSet<&Token> = annotations.map(|boxed| &boxed.instance_token).collect();
+    read_keyed(folder, |token| named.contains(token))
 }

@@ -1,0 +1,264 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
+/// drives.
+#[derive(Debug, Parser)]
+#[command(name = "occlabel", version, about)]
+#[command(
+    after_help = "Exit codes: 0 complete, 1 failed, 2 usage or configuration, 3 finished with \
+    something skipped or degraded, 130 interrupted (the same command goes on from there).\n\
+    Begin with `occlabel demo`."
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// How messages on stderr are written.
+    #[arg(long, value_enum, default_value_t = LogFormat::Text, global = true)]
+    pub(crate) log_format: LogFormat,
+    /// Print errors and results, nothing else.
+    #[arg(long, global = true)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Label a small drive that ships with the program, and show how to read the result.
+    Demo(DemoArgs),
+    /// Label a log: the main job.
+    Label(Box<LabelArgs>),
+    /// Show what a log holds.
+    Inspect(InspectArgs),
+    /// List the presets, or print one with the source of every key.
+    Presets {
+        /// The preset, or `taxonomies/NAME`.
+        name: Option<String>,
+    },
+    /// Print a completion script, or the manual page.
+    Completions {
+        /// bash, zsh, fish, powershell, elvish, or man.
+        shell: String,
+    },
+    /// Print the manual page.
+    Man,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DemoArgs {
+    /// Where the log and its labels go.
+    #[arg(long, default_value = "occlabel-demo")]
+    pub(crate) output: PathBuf,
+}
+
+/// Which log, and how to read it.
+#[derive(Debug, Args)]
+pub(crate) struct LogArgs {
+    /// The log's format.
+    #[arg(long, value_enum)]
+    pub(crate) format: Format,
+    /// The log's root folder.
+    #[arg(long)]
+    pub(crate) input: PathBuf,
+    /// nuScenes: the folder of the tables; needed if there are several.
+    #[arg(long)]
+    pub(crate) version: Option<String>,
+    /// Only these scenes.
+    #[arg(long, value_delimiter = ',', value_name = "NAME,...")]
+    pub(crate) scenes: Vec<String>,
+    /// Only the scenes listed in this file, one a line; `-` is stdin.
+    #[arg(long, value_name = "FILE", conflicts_with = "scenes")]
+    pub(crate) scenes_from: Option<PathBuf>,
+    /// The order of quaternions in the tables.
+    #[arg(long, value_enum, default_value_t = QuatOrder::Wxyz)]
+    pub(crate) quat_order: QuatOrder,
+    /// Values per point in sweep files; given, the files are taken at that word.
+    #[arg(long, value_parser = clap::value_parser!(u8).range(4..=5))]
+    pub(crate) columns: Option<u8>,
+    /// Take raw labels and categories that the taxonomy does not name as this class.
+    #[arg(long, value_name = "CLASS")]
+    pub(crate) unknown_as: Option<String>,
+}
+
+/// What decides the labels.
+#[derive(Debug, Args)]
+pub(crate) struct ConfigArgs {
+    /// A preset; `occlabel presets` lists them. [default: precise]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) preset: Option<String>,
+    /// A TOML file; keys it leaves out are as in `precise`.
+    #[arg(long, value_name = "FILE", conflicts_with = "preset")]
+    pub(crate) config: Option<PathBuf>,
+    /// Set one key, after preset or file; any number of times. VALUE is TOML, or else a string.
+    #[arg(long = "set", value_name = "table.key=VALUE")]
+    pub(crate) settings: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LabelArgs {
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    /// Where the label tree goes.
+    #[arg(long)]
+    pub(crate) output: PathBuf,
+    /// Only every N-th scene, counted from the I-th: a share of a larger run, I from 0.
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    pub(crate) shard: Option<Shard>,
+    /// Write only these keyframes; what is aggregated stays the same.
+    #[arg(long, value_delimiter = ',', value_name = "TOKEN,...")]
+    pub(crate) keyframes: Vec<String>,
+    /// Write `evidence.npz` beside `labels.npz`.
+    #[arg(long)]
+    pub(crate) evidence: bool,
+    /// Threads. [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) jobs: Option<u16>,
+    /// Memory to stay under, as 8GiB or 500MB.
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pub(crate) memory: Option<u64>,
+    /// What to do with the keyframes that an earlier run finished.
+    #[arg(long, value_enum, default_value_t = ResumeArg::IfSame)]
+    pub(crate) resume: ResumeArg,
+    /// What to do with a record, sweep, keyframe or scene that cannot be used.
+    #[arg(long, value_enum, default_value_t = OnError::Fail)]
+    pub(crate) on_error: OnError,
+    /// Label although listed sweep files are absent.
+    #[arg(long)]
+    pub(crate) allow_missing_sweeps: bool,
+    /// Show scenes, keyframes, rays and bytes; write nothing.
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// How progress is shown on stderr.
+    #[arg(long, value_enum, default_value_t = ProgressArg::Auto)]
+    pub(crate) progress: ProgressArg,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InspectArgs {
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Nuscenes,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum QuatOrder {
+    Wxyz,
+    Xyzw,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ResumeArg {
+    /// Keep them if version, configuration and inputs are the same, else stop.
+    IfSame,
+    /// Remove what that run wrote and start anew.
+    Never,
+    /// Keep them whatever they were made from.
+    Always,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OnError {
+    /// Stop.
+    Fail,
+    /// Leave it out, go on, and exit with 3.
+    Skip,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgressArg {
+    /// A bar on a terminal, plain lines elsewhere.
+    Auto,
+    Bar,
+    Plain,
+    /// One JSON object a line.
+    Json,
+    None,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LogFormat {
+    Text,
+    /// One JSON object a line.
+    Json,
+}
+
+/// A share of the scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shard {
+    pub(crate) index: usize,
+    pub(crate) count: usize,
+}
+
+impl Shard {
+    fn parse(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').map(|(i, n)| (i.parse::<usize>(), n.parse::<usize>()));
+        match numbers {
+            Some((Ok(index), Ok(count))) if index < count => Ok(Self { index, count }),
+            _ => Err(format!("expected I/N with 0 <= I < N, found `{text}`")),
+        }
+    }
+}
+
+/// Bytes of a size such as `8GiB`, `500MB` or `1000000`.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit: u64 = match &text[digits.len()..] {
+        "" | "B" => 1,
+        "kB" | "KB" => 1_000,
+        "MB" => 1_000_000,
+        "GB" => 1_000_000_000,
+        "KiB" => 1 << 10,
+        "MiB" => 1 << 20,
+        "GiB" => 1 << 30,
+        unit => {
+            return Err(format!("expected a unit of B, kB, MB, GB, KiB, MiB, GiB, found `{unit}`"));
+        }
+    };
+    match digits.trim().parse::<f64>() {
+        Ok(number) if number > 0.0 => Ok((number * unit as f64) as u64),
+        _ => Err(format!("expected a number above 0 with a unit, found `{text}`")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_have_units() {
+        assert_eq!(parse_bytes("8GiB"), Ok(8 << 30));
+        assert_eq!(parse_bytes("1.5kB"), Ok(1500));
+        assert_eq!(parse_bytes("12"), Ok(12));
+        assert!(
+            parse_bytes("8GiX").is_err()
+                && parse_bytes("-1GB").is_err()
+                && parse_bytes("").is_err()
+        );
+    }
+
+    #[test]
+    fn shards_count_from_0() {
+        assert_eq!(Shard::parse("0/3"), Ok(Shard { index: 0, count: 3 }));
+        assert!(
+            Shard::parse("3/3").is_err()
+                && Shard::parse("a/3").is_err()
+                && Shard::parse("1").is_err()
+        );
+    }
+}

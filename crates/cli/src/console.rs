@@ -1,0 +1,82 @@
+//! Messages on stderr: text or JSON lines. Results go to stdout.
+
+use std::io::Write;
+
+use occlabel_core::{Fault, printable};
+use serde_json::json;
+
+use crate::args::LogFormat;
+
+/// Where messages go, and how.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Console {
+    pub(crate) format: LogFormat,
+    pub(crate) quiet: bool,
+}
+
+impl Console {
+    /// What the user must know.
+    pub(crate) fn error(&self, fault: &Fault) {
+        self.write("error", fault);
+    }
+
+    /// What the user may want to know.
+    pub(crate) fn warning(&self, scene: &str, fault: &Fault) {
+        if !self.quiet {
+            self.write_of("warning", Some(scene), fault);
+        }
+    }
+
+    /// What is going on.
+    pub(crate) fn info(&self, message: &str) {
+        if !self.quiet {
+            self.line(&match self.format {
+                LogFormat::Text => printable(message),
+                LogFormat::Json => json!({ "level": "info", "message": message }).to_string(),
+            });
+        }
+    }
+
+    /// A line of the result. A reader that went away is no error.
+    pub(crate) fn result(&self, line: &str) {
+        let _ = writeln!(std::io::stdout(), "{line}");
+    }
+
+    fn write(&self, level: &str, fault: &Fault) {
+        self.write_of(level, None, fault);
+    }
+
+    fn write_of(&self, level: &str, scene: Option<&str>, fault: &Fault) {
+        self.line(&match (self.format, scene) {
+            (LogFormat::Text, Some(scene)) => format!("{level}: {}: {fault}", printable(scene)),
+            (LogFormat::Text, None) => format!("{level}: {fault}"),
+            (LogFormat::Json, scene) => fault_line(level, scene, fault),
+        });
+    }
+
+    fn line(&self, line: &str) {
+        let _ = writeln!(std::io::stderr(), "{line}");
+    }
+}
+
+fn fault_line(level: &str, scene: Option<&str>, fault: &Fault) -> String {
+    let mut line = fault_json(fault);
+    line["level"] = json!(level);
+    if let Some(scene) = scene {
+        line["scene"] = json!(scene);
+    }
+    line.to_string()
+}
+
+/// A fault as fields.
+pub(crate) fn fault_json(fault: &Fault) -> serde_json::Value {
+    json!({
+        "rule": fault.rule,
+        "place": fault.place,
+        "record": fault.record,
+        "offset": fault.offset,
+        "expected": fault.expected,
+        "found": fault.found,
+        "hint": fault.hint,
+    })
+}

@@ -1,0 +1,143 @@
+//! From the command line to an open log and the rules to label it by.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::Arc;
+
+use occlabel_core::{ClassId, Fault, Taxonomy};
+use occlabel_logs::{NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReaderDefaults};
+use occlabel_pipeline::{Autos, Config, Rules, parse_taxonomy, preset, shipped_taxonomy};
+
+use crate::args::{ConfigArgs, LogArgs, QuatOrder};
+use crate::exit::Stop;
+use crate::presets::unknown_preset;
+
+/// A log, and what decides its labels.
+pub(crate) struct Opened {
+    pub(crate) source: NuScenesLog,
+    /// The preset's name; none if a file was given.
+    pub(crate) preset: Option<String>,
+    /// Resolved: no `"auto"` left.
+    pub(crate) config: Config,
+    /// BLAKE3 of the taxonomy's file.
+    pub(crate) taxonomy_hash: String,
+    pub(crate) rules: Rules,
+}
+
+/// Opens the log and resolves the configuration against it.
+pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
+    let (preset, mut config) = read_config(args).map_err(Stop::usage)?;
+    check_input(log).map_err(Stop::usage)?;
+    let scenes = wanted_scenes(log).map_err(Stop::usage)?;
+    let defaults = NuScenesLog::format_defaults(&log.input, log.version.as_deref());
+    let autos = autos(defaults.map_err(usage_or_failed)?);
+    let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
+    let taxonomy = Arc::new(taxonomy);
+    let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
+    let options = NuScenesOptions {
+        version: log.version.clone(),
+        scenes,
+        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?,
+        taxonomy,
+        keyframes: config.keyframes.clone(),
+        quaternion_order: match log.quat_order {
+            QuatOrder::Wxyz => QuaternionOrder::Wxyz,
+            QuatOrder::Xyzw => QuaternionOrder::Xyzw,
+        },
+        columns: match log.columns {
+            Some(4) => Some(PointColumns::Four),
+            Some(_) => Some(PointColumns::Five),
+            None => None,
+        },
+    };
+    let source = NuScenesLog::open(&log.input, options).map_err(usage_or_failed)?;
+    Ok(Opened { source, preset, config, taxonomy_hash, rules })
+}
+
+/// What the user named wrongly is a matter of usage; what the log holds wrongly is not.
+fn usage_or_failed(fault: Fault) -> Stop {
+    match fault.rule {
+        "scene-unknown" | "version-folder" | "reference-lidar" => Stop::usage(fault),
+        _ => fault.into(),
+    }
+}
+
+fn read_config(args: &ConfigArgs) -> Result<(Option<String>, Config), Fault> {
+    let name = args.preset.as_deref().unwrap_or("precise");
+    let base = preset(name).ok_or_else(|| unknown_preset(name))?;
+    match &args.config {
+        None => Ok((Some(name.into()), Config::from_layers(name, base, None, &args.settings)?)),
+        Some(path) => {
+            let (place, file) = (path.display().to_string(), read_text(path)?);
+            Ok((None, Config::from_layers(&place, base, Some(&file), &args.settings)?))
+        }
+    }
+}
+
+/// Puts what is meant in place of every `"auto"`, and gives the taxonomy with its file's hash.
+fn resolve(config: &mut Config, autos: &Autos) -> Result<(Taxonomy, String), Fault> {
+    let file = config.taxonomy_file(autos).to_owned();
+    let (name, text) = match shipped_taxonomy(&file) {
+        Some(text) => (file.clone(), text.to_owned()),
+        None => (file_name(&file), read_text(Path::new(&file))?),
+    };
+    let taxonomy = parse_taxonomy(&text, &file)?;
+    config.taxonomy.file = name;
+    config.resolve(autos, &taxonomy);
+    Ok((taxonomy, blake3::hash(text.as_bytes()).to_string()))
+}
+
+/// A path without its folders, which would tell of the machine.
+fn file_name(file: &str) -> String {
+    Path::new(file).file_name().map_or(file.into(), |name| name.to_string_lossy().into_owned())
+}
+
+fn read_text(path: &Path) -> Result<String, Fault> {
+    std::fs::read_to_string(path).map_err(|error| {
+        Fault::new(
+            "config-file",
+            path.display().to_string(),
+            "a readable text file",
+            error.to_string(),
+        )
+    })
+}
+
+fn check_input(log: &LogArgs) -> Result<(), Fault> {
+    if log.input.is_dir() {
+        return Ok(());
+    }
+    let found = if log.input.exists() { "something else" } else { "nothing" };
+    Err(Fault::new("input", log.input.display().to_string(), "a log's root folder", found))
+}
+
+fn wanted_scenes(log: &LogArgs) -> Result<Option<BTreeSet<String>>, Fault> {
+    let Some(list) = &log.scenes_from else {
+        return Ok((!log.scenes.is_empty()).then(|| log.scenes.iter().cloned().collect()));
+    };
+    let text = if list.as_os_str() == "-" {
+        std::io::read_to_string(std::io::stdin())
+            .map_err(|error| Fault::new("scenes-from", "stdin", "scene names", error.to_string()))?
+    } else {
+        read_text(list)?
+    };
+    let names = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    Ok(Some(names.map(str::to_owned).collect()))
+}
+
+fn unknown_as(log: &LogArgs, taxonomy: &Taxonomy) -> Result<Option<ClassId>, Fault> {
+    let Some(name) = &log.unknown_as else { return Ok(None) };
+    let class = taxonomy.class_named(name).ok_or_else(|| {
+        let expected = format!("one of {}", taxonomy.names.join(", "));
+        Fault::new("config", "--unknown-as", expected, format!("`{name}`"))
+    })?;
+    Ok(Some(class))
+}
+
+fn autos(defaults: ReaderDefaults) -> Autos {
+    Autos {
+        ego_box_m: defaults.ego_box_m,
+        taxonomy: defaults.taxonomy.to_owned(),
+        reference_lidar: defaults.reference_lidar,
+    }
+}

@@ -1,0 +1,28 @@
+//! What a run found wrong, and what that makes of its outcome.
+
+use occlabel_core::Fault;
+
+use crate::exit::Outcome;
+
+/// Everything odd about the input, with its scene.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Findings {
+    /// Odd, but nothing is lost.
+    pub(crate) warnings: Vec<(String, Fault)>,
+    /// Skipped or degraded: each makes the exit code 3.
+    pub(crate) losses: Vec<(String, Fault)>,
+}
+
+impl Findings {
+    pub(crate) fn warn(&mut self, scene: &str, fault: Fault) {
+        self.warnings.push((scene.to_owned(), fault));
+    }
+
+    pub(crate) fn lose(&mut self, scene: &str, fault: Fault) {
+        self.losses.push((scene.to_owned(), fault));
+    }
+
+    pub(crate) fn outcome(&self) -> Outcome {
+        if self.losses.is_empty() { Outcome::Complete } else { Outcome::Degraded }
+    }
+}

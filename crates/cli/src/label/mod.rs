@@ -1,0 +1,115 @@
+//! `label`: the main job, scene after scene.
+
+mod clock;
+mod findings;
+mod plan;
+mod records;
+mod report;
+mod scene;
+mod tally;
+mod workers;
+
+use occlabel_core::Fault;
+use occlabel_labels::{LabelTree, RESUME_DIFFERS, Resume, RunFiles, begin};
+
+use crate::args::{LabelArgs, OnError, ResumeArg};
+use crate::console::Console;
+use crate::exit::{Outcome, Stop};
+use crate::input::{Opened, open};
+use crate::interrupt::Interrupt;
+use crate::label::findings::Findings;
+use crate::label::plan::Plan;
+use crate::label::report::Report;
+use crate::label::scene::SceneRun;
+use crate::progress::Progress;
+
+/// What every part of the run needs.
+pub(crate) struct Job<'a> {
+    args: &'a LabelArgs,
+    opened: &'a Opened,
+    console: &'a Console,
+    tree: LabelTree,
+    threads: usize,
+}
+
+impl Job<'_> {
+    /// Whether what cannot be used is left out, rather than ending the run.
+    fn skips(&self) -> bool {
+        self.args.on_error == OnError::Skip
+    }
+}
+
+pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> {
+    let interrupt = Interrupt::listen();
+    let threads = start_threads(args)?;
+    let opened = open(&args.log, &args.config)?;
+    let tree = LabelTree::new(&args.output);
+    let job = Job { args, opened: &opened, console, tree, threads };
+    let mut findings = Findings::default();
+    let plan = Plan::make(&job, &mut findings)?;
+    if args.dry_run {
+        plan.print(console);
+        return Ok(findings.outcome());
+    }
+    label_scenes(&job, &plan, findings, &interrupt)
+}
+
+/// The thread pool of all stages. A second command in one process keeps the first one's.
+fn start_threads(args: &LabelArgs) -> Result<usize, Stop> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = args.jobs.map_or(cores, usize::from);
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    Ok(threads)
+}
+
+fn label_scenes(
+    job: &Job,
+    plan: &Plan,
+    mut findings: Findings,
+    interrupt: &Interrupt,
+) -> Result<Outcome, Stop> {
+    let files = run_files(job);
+    let record = records::run_record(job, plan)?;
+    let mut begun = begin(&files, &record, resume(job.args.resume)).map_err(usage_if_differs)?;
+    let finished = std::mem::take(&mut begun.finished);
+    let progress =
+        Progress::new(job.args.progress, job.console.quiet, plan.scenes.len(), plan.keyframes());
+    let mut report = Report::new();
+    let mut entries = Vec::new();
+    for planned in &plan.scenes {
+        let run = SceneRun { job, planned, progress: &progress, interrupt };
+        let done = run.label(&finished, &mut begun.journal, &mut findings)?;
+        report.add(&planned.name, &done);
+        entries.extend(done.entries);
+        if interrupt.is_raised() {
+            job.console.info("interrupted: the same command goes on from here");
+            return Ok(Outcome::Interrupted);
+        }
+        progress.suspend(|| job.console.result(&done.tally.line(&planned.name)));
+    }
+    progress.finish();
+    let outcome = findings.outcome();
+    let manifest = records::manifest(job, plan, &record, &entries);
+    begun.end(&manifest, &report.json(outcome, &findings, job.threads))?;
+    job.console.result(&report.total_line());
+    Ok(outcome)
+}
+
+fn run_files(job: &Job) -> RunFiles {
+    match job.args.shard {
+        None => RunFiles::whole(job.tree.clone()),
+        Some(shard) => RunFiles::shard(job.tree.clone(), shard.index, shard.count),
+    }
+}
+
+fn resume(arg: ResumeArg) -> Resume {
+    match arg {
+        ResumeArg::IfSame => Resume::IfSame,
+        ResumeArg::Never => Resume::Never,
+        ResumeArg::Always => Resume::Always,
+    }
+}
+
+fn usage_if_differs(fault: Fault) -> Stop {
+    if fault.rule == RESUME_DIFFERS { Stop::usage(fault) } else { fault.into() }
+}

@@ -1,0 +1,125 @@
+//! What an earlier run left in the tree.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use occlabel_core::Fault;
+use serde_json::{Map, Value, json};
+
+use crate::atomic::{remove_empty_dirs, remove_file};
+use crate::differences::differences;
+use crate::{
+    FileRecord, InputRecord, JournalEntry, LabelTree, Manifest, RunFiles, RunRecord, TreePath,
+    WriterLock, inputs_hash, journal, json,
+};
+
+/// The records of an earlier run: of one that was interrupted, of one that ended, or of both.
+pub(crate) struct Earlier {
+    run: Option<RunRecord>,
+    journal: Vec<JournalEntry>,
+    manifest: Option<Manifest>,
+}
+
+impl Earlier {
+    /// Reads what is there.
+    pub(crate) fn load(files: &RunFiles) -> Result<Self, Fault> {
+        Ok(Self {
+            run: json::read(&files.run())?,
+            journal: journal::read(&files.journal())?,
+            manifest: Manifest::load(&files.manifest())?,
+        })
+    }
+
+    /// In what the earlier run differs from this one. An unfinished run knows its inputs one by
+    /// one; a finished one only their hash.
+    pub(crate) fn differences(&self, now: &RunRecord) -> Vec<String> {
+        match (&self.run, &self.manifest) {
+            (Some(run), _) => differences(&by_key(run), &by_key(now)),
+            (None, Some(manifest)) => differences(&manifest_identity(manifest), &identity(now)),
+            (None, None) => Vec::new(),
+        }
+    }
+
+    /// Whether there is a manifest, and a run of this record would write the same.
+    pub(crate) fn manifest_is_of(&self, now: &RunRecord) -> bool {
+        let manifest = self.manifest.as_ref();
+        manifest.is_some_and(|manifest| manifest_identity(manifest) == identity(now))
+    }
+
+    /// The keyframes whose files stand, by scene and token.
+    pub(crate) fn finished(&self, tree: &LabelTree) -> BTreeMap<(String, String), JournalEntry> {
+        let listed = self.manifest.iter().flat_map(entries_of);
+        let entries = listed.chain(self.journal.iter().cloned());
+        entries
+            .filter(|entry| entry.stands(tree))
+            .map(|entry| ((entry.scene.clone(), entry.keyframe.clone()), entry))
+            .collect()
+    }
+
+    /// Removes all files of the earlier run, its records last, and the folders that this empties.
+    pub(crate) fn remove(&self, files: &RunFiles) -> Result<(), Fault> {
+        let (tree, paths) = (files.tree(), self.paths());
+        let scenes: BTreeSet<_> = paths.iter().filter_map(|path| path.scene()).collect();
+        let locks = scenes.into_iter().map(|scene| WriterLock::of_scene(tree, scene));
+        let locks = locks.collect::<Result<Vec<_>, Fault>>()?;
+        for path in &paths {
+            remove_file(&tree.place(path))?;
+        }
+        for record in [files.manifest(), files.report(), files.journal(), files.run()] {
+            remove_file(&record)?;
+        }
+        drop(locks);
+        for path in &paths {
+            remove_empty_dirs(tree.place(path).parent().unwrap_or(tree.root()), tree.root());
+        }
+        Ok(())
+    }
+
+    fn paths(&self) -> BTreeSet<&TreePath> {
+        let noted = self.journal.iter().flat_map(|entry| &entry.files);
+        let listed = self.manifest.iter().flat_map(|manifest| &manifest.files);
+        noted.chain(listed).map(|file| &file.path).collect()
+    }
+}
+
+/// The keyframes of a manifest, each with its files.
+fn entries_of(manifest: &Manifest) -> Vec<JournalEntry> {
+    let mut files: BTreeMap<&str, Vec<FileRecord>> = BTreeMap::new();
+    for file in &manifest.files {
+        let (folder, _) = file.path.as_str().rsplit_once('/').unwrap_or_default();
+        files.entry(folder).or_default().push(file.clone());
+    }
+    let keyframes = manifest.scenes.iter().flat_map(|(scene, record)| {
+        record.keyframes.iter().map(move |keyframe| (scene.clone(), keyframe.clone()))
+    });
+    keyframes
+        .filter_map(|(scene, keyframe)| {
+            let files = files.remove(format!("gts/{scene}/{keyframe}").as_str())?;
+            Some(JournalEntry { scene, keyframe, files, summary: Value::Null })
+        })
+        .collect()
+}
+
+/// A run's record with its inputs by path.
+fn by_key(run: &RunRecord) -> Value {
+    let inputs: Map<_, _> = run.inputs.iter().map(input_by_key).collect();
+    json!({"program": run.program, "config": run.config, "inputs": inputs})
+}
+
+fn input_by_key(input: &InputRecord) -> (String, Value) {
+    let mut value = json!(input);
+    if let Some(fields) = value.as_object_mut() {
+        fields.remove("path");
+    }
+    (input.path.clone(), value)
+}
+
+/// What of a run's record stands in its manifest.
+fn identity(run: &RunRecord) -> Value {
+    let inputs = inputs_hash(&run.inputs);
+    json!({"program": run.program, "config": run.config, "inputs_hash": inputs})
+}
+
+fn manifest_identity(manifest: &Manifest) -> Value {
+    let inputs = &manifest.inputs_hash;
+    json!({"program": manifest.program, "config": manifest.config, "inputs_hash": inputs})
+}

@@ -1,0 +1,79 @@
+//! Where a run keeps its records in the tree.
+
+use std::path::PathBuf;
+
+use crate::LabelTree;
+
+/// A run's own files at the top of a tree. Shards that run side by side have theirs each:
+/// `manifest.0-of-4.json`, `run.0-of-4.json` and so on.
+#[derive(Clone, Debug)]
+pub struct RunFiles {
+    tree: LabelTree,
+    shard: Option<(usize, usize)>,
+}
+
+impl RunFiles {
+    /// The files of a run over all of a tree.
+    pub fn whole(tree: LabelTree) -> Self {
+        Self { tree, shard: None }
+    }
+
+    /// The files of shard `index` of `count`, from 0.
+    pub fn shard(tree: LabelTree, index: usize, count: usize) -> Self {
+        Self { tree, shard: Some((index, count)) }
+    }
+
+    /// The tree they stand in.
+    pub fn tree(&self) -> &LabelTree {
+        &self.tree
+    }
+
+    /// `manifest.json`: the run is finished.
+    pub fn manifest(&self) -> PathBuf {
+        self.named("manifest", "json")
+    }
+
+    /// `report.json`: how the run went.
+    pub fn report(&self) -> PathBuf {
+        self.named("report", "json")
+    }
+
+    /// `run.json`: what the run is, while it is not finished.
+    pub fn run(&self) -> PathBuf {
+        self.named("run", "json")
+    }
+
+    /// `journal.jsonl`: how far the run is.
+    pub fn journal(&self) -> PathBuf {
+        self.named("journal", "jsonl")
+    }
+
+    /// `.run.lock`: which process runs it.
+    pub(crate) fn lock(&self) -> PathBuf {
+        self.named(".run", "lock")
+    }
+
+    fn named(&self, stem: &str, ending: &str) -> PathBuf {
+        self.tree.root().join(match self.shard {
+            None => format!("{stem}.{ending}"),
+            Some((index, count)) => format!("{stem}.{index}-of-{count}.{ending}"),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_have_their_own_files() {
+        let tree = LabelTree::new("out");
+        let names = |files: RunFiles| {
+            [files.manifest(), files.report(), files.run(), files.journal()]
+                .map(|path| path.strip_prefix("out").unwrap().display().to_string())
+        };
+        let whole = ["manifest.json", "report.json", "run.json", "journal.jsonl"];
+        assert_eq!(names(RunFiles::whole(tree.clone())), whole);
+        assert_eq!(names(RunFiles::shard(tree, 0, 4))[0], "manifest.0-of-4.json");
+    }
+}

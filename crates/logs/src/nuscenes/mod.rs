@@ -1,0 +1,173 @@
+//! Logs in the layout of nuScenes v1.0: JSON tables, and a file of points for each sweep.
+//!
+//! The tables are read once, when the log is opened, row by row, keeping only what the wanted scenes
+//! need: the full data set has millions of rows, a scene a few thousand. Scenes are built from these
+//! rows on demand; points are read when they are asked for.
+
+mod cameras;
+mod captures;
+mod files;
+mod keyframes;
+mod label_files;
+mod missing;
+mod names;
+mod notes;
+mod npz;
+mod number;
+mod optics;
+mod points;
+mod pose;
+mod raw_labels;
+mod records;
+mod rows;
+mod scene;
+mod sweep_points;
+mod sweeps;
+mod table;
+mod tables;
+mod token;
+mod tracks;
+mod version;
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use occlabel_core::{
+    ClassId, Fault, KeyframeSettings, KeyframeSource, Scene, SweepHeader, Taxonomy,
+};
+
+use crate::{ReaderDefaults, SceneSource, SweepPoints};
+
+pub use missing::MissingFile;
+pub use points::PointColumns;
+pub use pose::QuaternionOrder;
+
+use label_files::LabelFile;
+use tables::Tables;
+use token::Token;
+
+/// Body and roof rack of the nuScenes car, ego frame (rear axle on the ground), metres
+/// (labels.md section 13).
+const EGO_BOX_M: ([f64; 3], [f64; 3]) = ([-1.2, -1.1, -0.3], [3.7, 1.1, 2.2]);
+
+/// How to read a nuScenes log.
+#[derive(Clone, Debug)]
+pub struct NuScenesOptions {
+    /// The folder of the tables, such as `v1.0-mini`; `None`: the only one there is.
+    pub version: Option<String>,
+    /// Names of the wanted scenes; `None`: all.
+    pub scenes: Option<BTreeSet<String>>,
+    /// What point labels and box categories mean.
+    pub taxonomy: Arc<Taxonomy>,
+    /// Which moments become keyframes.
+    pub keyframes: KeyframeSettings,
+    /// The class of labels and categories that the taxonomy does not name; `None` refuses them.
+    pub unknown_as: Option<ClassId>,
+    /// How quaternions stand in the tables.
+    pub quaternion_order: QuaternionOrder,
+    /// Numbers a point; `None`: five, checked by the look of the fifth.
+    pub columns: Option<PointColumns>,
+}
+
+/// A log in the layout of nuScenes v1.0.
+#[derive(Debug)]
+pub struct NuScenesLog {
+    root: PathBuf,
+    options: NuScenesOptions,
+    tables: Tables,
+    defaults: ReaderDefaults,
+    /// Relative to the root.
+    table_files: Vec<String>,
+}
+
+impl NuScenesLog {
+    /// Opens a log: reads its tables, as far as the wanted scenes need them.
+    ///
+    /// # Errors
+    /// If a table is absent, broken, or names rows that are not there; if a wanted scene is not
+    /// there; if a scene's name cannot be that of a folder.
+    pub fn open(root: &Path, options: NuScenesOptions) -> Result<Self, Fault> {
+        let folder = version::version_folder(root, options.version.as_deref())?;
+        let defaults = defaults(&folder)?;
+        let tables = Tables::read(&folder, options.scenes.as_ref())?;
+        let table_files = version::table_files(root, &folder)?;
+        Ok(Self { root: root.to_owned(), options, tables, defaults, table_files })
+    }
+
+    /// What the format itself says where the configuration says `"auto"`: known before the log is
+    /// opened, at the price of one small table.
+    ///
+    /// # Errors
+    /// If the version folder or its table of sensors cannot be read, or no lidar is in it.
+    pub fn format_defaults(root: &Path, version: Option<&str>) -> Result<ReaderDefaults, Fault> {
+        defaults(&version::version_folder(root, version)?)
+    }
+
+    /// The scene's files of points and labels that are not there, all at once.
+    pub fn missing_files(&self, scene: &Scene) -> Vec<MissingFile> {
+        missing::missing_files(self, scene)
+    }
+
+    /// The file that labels a sweep's points, unless the sweep is to go without.
+    fn label_file(&self, sweep: &SweepHeader) -> Option<&LabelFile> {
+        let token = Token::from(sweep.source_id.as_str());
+        self.tables.labels.get(&token).filter(|_| sweep.labelled)
+    }
+
+    /// The fault of something that the taxonomy does not name: a warning if a class stands in for it.
+    fn unknown(&self, fault: Fault) -> Result<Fault, Fault> {
+        let Some(class) = self.options.unknown_as else {
+            return Err(fault.hint("`--unknown-as CLASS` gives it a class"));
+        };
+        let name = self.options.taxonomy.names.get(class.index());
+        let taken_as = name.map_or_else(|| class.0.to_string(), |name| format!("`{name}`"));
+        Ok(Fault { found: format!("{}, taken as {taken_as}", fault.found), ..fault })
+    }
+}
+
+impl SceneSource for NuScenesLog {
+    fn scene_names(&self) -> Vec<String> {
+        self.tables.scenes.iter().map(|scene| scene.name.clone()).collect()
+    }
+
+    fn tables(&self) -> Vec<String> {
+        self.table_files.clone()
+    }
+
+    fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {
+        let labels = self.label_file(sweep).map(|labels| labels.file.clone());
+        std::iter::once(sweep.file.clone()).chain(labels).collect()
+    }
+
+    fn load(&self, scene: &str) -> Result<Scene, Fault> {
+        match self.tables.scene(scene) {
+            Some(rows) => scene::build_scene(self, rows),
+            None => {
+                Err(Fault::new("scene-unknown", "scene.json", format!("a scene `{scene}`"), "none"))
+            }
+        }
+    }
+
+    fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
+        sweep_points::read_sweep_points(self, sweep)
+    }
+
+    fn defaults(&self) -> ReaderDefaults {
+        self.defaults.clone()
+    }
+}
+
+fn defaults(folder: &Path) -> Result<ReaderDefaults, Fault> {
+    let sensors: HashMap<Token, table::Row<rows::Sensor>> = table::read_keyed(folder, |_| true)?;
+    let lidars = sensors.values().filter(|sensor| sensor.modality == "lidar");
+    let names: Vec<String> = lidars.map(|lidar| lidar.channel.clone()).collect();
+    let none = || Fault::new("reference-lidar", "sensor.json", "a lidar", "none");
+    let auto = KeyframeSettings {
+        source: KeyframeSource::Annotated,
+        stride: 1,
+        reference_lidar: "auto".into(),
+    };
+    let reference_lidar = auto.choose_lidar(&names).ok_or_else(none)?;
+    Ok(ReaderDefaults { ego_box_m: Some(EGO_BOX_M), taxonomy: "occ3d-nuscenes", reference_lidar })
+}

@@ -1,0 +1,134 @@
+//! A camera from its calibration (labels.md section 2).
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{ImageFormat, ImageReader, Limits};
+use occlabel_core::camera::{
+    BodyMask, BrownConrady, CameraError, CameraModel, Intrinsics, KannalaBrandt, Mei, Ocam, Pinhole,
+};
+use occlabel_core::{Camera, Fault};
+
+use super::captures::Capture;
+use super::files::{name_defect, read_file};
+use super::number::{Number, plain};
+use super::rows::{CalibratedSensor, OcamFields};
+use super::table::Row;
+
+/// The camera that took an image: model, size and body mask.
+///
+/// # Errors
+/// If the size is 0 or absent, the calibration is none of the named model, or the mask cannot be
+/// read or is of another size.
+pub(super) fn camera_of(root: &Path, image: &Capture<'_>) -> Result<Camera, Fault> {
+    let (width, height) = (image.row.width.unwrap_or(0), image.row.height.unwrap_or(0));
+    if width == 0 || height == 0 {
+        let found = format!("{width} x {height} of {}", image.channel);
+        return Err(image.row.fault("camera-size", "a width and a height above 0", found));
+    }
+    let model = model_of(image.calibration)?;
+    let body_mask = match &image.calibration.mask {
+        Some(file) => Some(read_mask(root, image.calibration, file, [width, height])?),
+        None => None,
+    };
+    Ok(Camera { model, width, height, body_mask, rolling_shutter: None })
+}
+
+fn model_of(calibration: &Row<CalibratedSensor>) -> Result<CameraModel, Fault> {
+    let name = calibration.camera_model.as_deref().unwrap_or("pinhole");
+    let distortion = reals(calibration.camera_distortion.as_deref().unwrap_or_default());
+    let model = match name {
+        "pinhole" => pinhole(calibration, &distortion),
+        "brown-conrady" => intrinsics(calibration)
+            .and_then(|k| Ok(CameraModel::BrownConrady(BrownConrady::new(k, &distortion)?))),
+        "kannala-brandt" => intrinsics(calibration)
+            .and_then(|k| Ok(CameraModel::KannalaBrandt(KannalaBrandt::new(k, &distortion)?))),
+        "mei" => {
+            intrinsics(calibration).and_then(|k| Ok(CameraModel::Mei(Mei::new(k, &distortion)?)))
+        }
+        "ocam" => ocam(calibration.ocam.as_ref()),
+        _ => Err("none of pinhole, brown-conrady, kannala-brandt, mei, ocam".into()),
+    };
+    let expected = format!("a calibration of the camera model `{name}`");
+    model.map_err(|Defect(found)| calibration.fault("camera-model", expected, found))
+}
+
+/// What is wrong with a calibration.
+struct Defect(String);
+
+impl From<CameraError> for Defect {
+    fn from(error: CameraError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<&str> for Defect {
+    fn from(defect: &str) -> Self {
+        Self(defect.to_owned())
+    }
+}
+
+fn pinhole(calibration: &Row<CalibratedSensor>, distortion: &[f64]) -> Result<CameraModel, Defect> {
+    match distortion.iter().all(|coefficient| *coefficient == 0.0) {
+        true => Ok(CameraModel::Pinhole(Pinhole::new(intrinsics(calibration)?))),
+        false => Err("a distortion, which needs another `camera_model`".into()),
+    }
+}
+
+fn intrinsics(calibration: &Row<CalibratedSensor>) -> Result<Intrinsics, Defect> {
+    let rows: Vec<[f64; 3]> = calibration
+        .camera_intrinsic
+        .iter()
+        .filter_map(|row| <[f64; 3]>::try_from(reals(row)).ok())
+        .collect();
+    match <[[f64; 3]; 3]>::try_from(rows) {
+        Ok(matrix) if calibration.camera_intrinsic.len() == 3 => {
+            Ok(Intrinsics::from_matrix(&matrix)?)
+        }
+        _ => Err("a `camera_intrinsic` that is not 3 x 3".into()),
+    }
+}
+
+fn ocam(fields: Option<&OcamFields>) -> Result<CameraModel, Defect> {
+    let Some(fields) = fields else { return Err("no field `ocam`".into()) };
+    let (poly, centre, affine) =
+        (reals(&fields.poly), plain(&fields.centre), plain(&fields.affine));
+    Ok(CameraModel::Ocam(Ocam::new(&poly, centre, affine, fields.max_angle_rad.0)?))
+}
+
+fn reals(numbers: &[Number]) -> Vec<f64> {
+    numbers.iter().map(|number| number.0).collect()
+}
+
+/// An 8-bit image of the camera's size: what is not 0 is the vehicle's own body.
+fn read_mask(
+    root: &Path,
+    calibration: &Row<CalibratedSensor>,
+    file: &str,
+    [width, height]: [u32; 2],
+) -> Result<BodyMask, Fault> {
+    let expected = format!("a mask of {width} x {height} pixels");
+    let fault = |found: String| {
+        Fault::new("camera-mask", file, &expected, found).record(calibration.token.to_string())
+    };
+    if let Some(defect) = name_defect(file) {
+        return Err(calibration.fault("file-name", "a path below the log's root", defect));
+    }
+    let bytes = read_file(root, file)?;
+    let pixels = decode(bytes, width, height).map_err(fault)?;
+    let covered = pixels.iter().map(|&value| value != 0).collect();
+    BodyMask::new(width, height, covered).map_err(|error| fault(error.to_string()))
+}
+
+/// The grey values of a PNG of this size.
+fn decode(bytes: Vec<u8>, width: u32, height: u32) -> Result<Vec<u8>, String> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
+    let mut limits = Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(width), Some(height));
+    reader.limits(limits);
+    let pixels = reader.decode().map_err(|error| error.to_string())?.into_luma8();
+    match pixels.dimensions() == (width, height) {
+        true => Ok(pixels.into_raw()),
+        false => Err(format!("{} x {} pixels", pixels.width(), pixels.height())),
+    }
+}

@@ -1,0 +1,100 @@
+//! The points of a sweep's file.
+
+use nalgebra::Point3;
+use occlabel_core::Fault;
+
+/// Numbers a point in a sweep's file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointColumns {
+    /// x, y, z, intensity, as KITTI has it.
+    Four,
+    /// x, y, z, intensity, ring, as nuScenes has it.
+    Five,
+}
+
+/// A ring's number is below this: the largest lidars have 128 beams.
+const RING_LIMIT: f32 = 256.0;
+
+impl PointColumns {
+    fn count(self) -> usize {
+        match self {
+            Self::Four => 4,
+            Self::Five => 5,
+        }
+    }
+
+    fn bytes(self) -> usize {
+        4 * self.count()
+    }
+}
+
+/// The points of a file of 32-bit little-endian numbers, lidar frame, metres; and what is odd.
+///
+/// Without `columns` there have to be five, and the fifth has to look like a ring: a file of four
+/// columns can have a length that fits five.
+///
+/// # Errors
+/// If the bytes are no whole number of points, or look like four columns.
+pub(super) fn decode_points(
+    bytes: &[u8],
+    file: &str,
+    columns: Option<PointColumns>,
+) -> Result<(Vec<Point3<f64>>, Vec<Fault>), Fault> {
+    let stride = columns.unwrap_or(PointColumns::Five);
+    if bytes.len() % stride.bytes() != 0 {
+        return Err(wrong_length(bytes.len(), file, stride));
+    }
+    if columns.is_none() && bytes.len() % PointColumns::Four.bytes() == 0 && !has_rings(bytes) {
+        let found = "a fifth column that is mostly no ring";
+        return Err(four_columns(Fault::new("sweep-columns", file, "five columns", found)));
+    }
+    let points: Vec<_> = bytes.chunks_exact(stride.bytes()).map(position).collect();
+    let warnings = oddities(&points, file);
+    Ok((points, warnings))
+}
+
+fn position(point: &[u8]) -> Point3<f64> {
+    Point3::from([0, 1, 2].map(|column| f64::from(number(point, column))))
+}
+
+/// A column of a point; NaN if the point has no such column.
+fn number(point: &[u8], column: usize) -> f32 {
+    let bytes = point[4 * column..].first_chunk();
+    bytes.map_or(f32::NAN, |bytes| f32::from_le_bytes(*bytes))
+}
+
+/// Whether at least half of the points have a small whole number as their fifth.
+fn has_rings(bytes: &[u8]) -> bool {
+    let is_ring = |ring: f32| (0.0..RING_LIMIT).contains(&ring) && ring.fract() == 0.0;
+    let points = bytes.chunks_exact(PointColumns::Five.bytes());
+    let all = points.len();
+    2 * points.filter(|point| is_ring(number(point, 4))).count() >= all
+}
+
+fn wrong_length(bytes: usize, file: &str, columns: PointColumns) -> Fault {
+    let (each, count) = (columns.bytes(), columns.count());
+    let expected = format!("a multiple of {each} bytes ({count} columns)");
+    let found = format!("{bytes} bytes, {} more than {} points", bytes % each, bytes / each);
+    let fault = Fault::new("sweep-length", file, expected, found);
+    match columns == PointColumns::Five && bytes % PointColumns::Four.bytes() == 0 {
+        true => four_columns(fault),
+        false => fault,
+    }
+}
+
+fn four_columns(fault: Fault) -> Fault {
+    fault.hint("looks like 4-column KITTI: if it is, `--columns 4` reads it")
+}
+
+fn oddities(points: &[Point3<f64>], file: &str) -> Vec<Fault> {
+    let is_bad = |point: &&Point3<f64>| !point.coords.iter().all(|metres| metres.is_finite());
+    let (bad, all) = (points.iter().filter(is_bad).count(), points.len());
+    if all == 0 {
+        vec![Fault::new("sweep-empty", file, "points", "none")]
+    } else if 2 * bad > all {
+        let found = format!("{bad} of {all} points with a NaN or an infinity");
+        vec![Fault::new("sweep-not-finite", file, "finite coordinates", found)]
+    } else {
+        Vec::new()
+    }
+}

@@ -1,0 +1,69 @@
+//! Which folder of a log holds its tables.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use occlabel_core::Fault;
+
+use super::files::{is_folder_name, unreadable};
+use super::names::quoted;
+
+/// Version folders begin so.
+const PREFIX: &str = "v1.0-";
+
+/// The folder of the tables: the named one, else the only one called `v1.0-…`.
+///
+/// # Errors
+/// If the root cannot be read, the named folder is not there, or none is named and there is not
+/// exactly one.
+pub(super) fn version_folder(root: &Path, version: Option<&str>) -> Result<PathBuf, Fault> {
+    let place = root.to_string_lossy();
+    let known = version_names(root)?;
+    let list: Vec<&str> = known.iter().map(String::as_str).collect();
+    let found = if list.is_empty() { "none".into() } else { quoted(&list) };
+    match (version, list.as_slice()) {
+        (Some(name), _) if is_folder_name(name) && root.join(name).is_dir() => Ok(root.join(name)),
+        (Some(name), _) => {
+            let expected = format!("a folder `{name}` with the tables");
+            Err(Fault::new("version-folder", place, expected, found))
+        }
+        (None, [only]) => Ok(root.join(only)),
+        (None, []) => {
+            let expected = format!("a folder `{PREFIX}…` with the tables");
+            Err(Fault::new("version-folder", place, expected, found))
+        }
+        (None, _) => {
+            let fault = Fault::new("version-folder", place, "one version", found);
+            Err(fault.hint("name one with `--version`"))
+        }
+    }
+}
+
+/// The tables of a version folder, relative to the log's root, sorted.
+pub(super) fn table_files(root: &Path, folder: &Path) -> Result<Vec<String>, Fault> {
+    let place = folder.to_string_lossy();
+    let entries = fs::read_dir(folder).map_err(|error| unreadable(&place, &error))?;
+    let is_table = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
+    let mut files: Vec<String> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(is_table)
+        .map(|path| path.strip_prefix(root).unwrap_or(&path).to_string_lossy().into_owned())
+        .collect();
+    files.sort_unstable();
+    Ok(files)
+}
+
+/// Names of the version folders, sorted.
+fn version_names(root: &Path) -> Result<Vec<String>, Fault> {
+    let place = root.to_string_lossy();
+    let entries = fs::read_dir(root).map_err(|error| unreadable(&place, &error))?;
+    let mut names: Vec<String> = entries
+        .flatten()
+        .filter(|entry| entry.path().is_dir())
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter(|name| name.starts_with(PREFIX))
+        .collect();
+    names.sort_unstable();
+    Ok(names)
+}
