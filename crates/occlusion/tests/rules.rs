@@ -1,6 +1,5 @@
 //! The rules of labels.md section 10, one by one, on rows of voxels whose answer is known by hand.
 
-use nalgebra::Vector3;
 use occlabel_core::camera::{BodyMask, CameraModel, Intrinsics, Ocam, Pinhole};
 use occlabel_core::{Camera, ClassId, ClassSet, GridSpec, Pose, VoxelGrid, VoxelState, VoxelVote};
 use occlabel_occlusion::{CameraRays, Eye, Matter, Occluders, OcclusionSettings, matter, visible};
@@ -289,15 +288,11 @@ fn section_10_a_camera_outside_the_grid_looks_into_it() {
 
 #[test]
 fn section_10_ties_step_x_before_y_before_z_away_from_the_camera() {
-    let (spec, camera) = (grid([3, 1, 3]), square(300));
+    let (spec, camera) = (grid([3, 1, 3]), pinhole(300, 300, 100.0));
     let eyes = [eye(&camera, 0, [0.5; 3])];
-    // (1, 0, 1) lies on a diagonal just outside the image's border, (1, 0, 2) within.
-    let wide = pinhole(300, 300, 100.0);
-    let wide_eyes = [eye(&wide, 0, [0.5; 3])];
     let rays = CameraRays::OccupiedCenters;
-    assert_eq!(bits(&eyes, &spec, &[[1, 0, 1]], rays).values(), [0; 9]);
-    let seen = bits(&wide_eyes, &spec, &[[1, 0, 1]], rays);
+    let seen = bits(&eyes, &spec, &[[1, 0, 1]], rays);
     assert_eq!(seen.values(), [1, 0, 0, 1, 1, 0, 0, 0, 0], "(0, 0, 0), (1, 0, 0), (1, 0, 1)");
-    let hidden = bits(&wide_eyes, &spec, &[[1, 0, 0], [1, 0, 1]], rays);
+    let hidden = bits(&eyes, &spec, &[[1, 0, 0], [1, 0, 1]], rays);
     assert_eq!(hidden.values(), [1, 0, 0, 1, 0, 0, 0, 0, 0], "the corner's voxel blocks");
 }

@@ -14,8 +14,8 @@ use occlabel_pipeline::Rules;
 use occlabel_testkit::assert_golden;
 use scenes::{
     Body, CAR, Drive, LEGEND, MANMADE, PEDESTRIAN, Stage, TERRAIN, UNOBSERVED, camera, class_at,
-    directions, from_above, from_the_left, look, looking_ahead, road_in_a_hall, same_arrays, slab,
-    small, upright, world_from_map,
+    directions, from_above, from_the_left, look, looking_ahead, road_in_a_hall, same_but_flow,
+    slab, small, upright, world_from_map,
 };
 
 const SHAPE: [usize; 3] = [24, 16, 6];
@@ -57,7 +57,7 @@ fn a_wall_throws_a_shadow() {
         map_from_ego: STILL,
         sweeps_s: &[0.0],
         annotated_s: &[],
-        step_deg: 1.5,
+        step_deg: 0.5,
     };
     let rules = small(&[]);
     let labels = stage.drive(&[0.0]).label(&rules);
@@ -112,7 +112,7 @@ fn a_pillar_throws_a_wedge_and_of_two_the_common_part_stays_dark() {
         };
         let labels = stage.drive(&[0.0]).label(&rules);
         let [dark, lit, occupied] = stage.check_still(&labels, &rules);
-        assert!(dark > 400 && lit > 1000 && occupied > 300, "{dark}, {lit}, {occupied}");
+        assert!(dark > 350 && lit > 1300 && occupied > 300, "{dark}, {lit}, {occupied}");
         labels
     };
     let (one, two) = (seen_from(&[0.0]), seen_from(&[0.0, 0.5]));
@@ -140,7 +140,7 @@ fn a_tunnel_hides_all_but_what_its_end_lets_through() {
         map_from_ego: STILL,
         sweeps_s: &[0.0],
         annotated_s: &[],
-        step_deg: 1.5,
+        step_deg: 0.5,
     };
     let rules = small(&[]);
     let labels = stage.drive(&[0.0]).label(&rules);
@@ -167,13 +167,14 @@ fn ground_on_two_levels_is_ground_on_both() {
         map_from_ego: STILL,
         sweeps_s: &[0.0],
         annotated_s: &[],
-        step_deg: 1.0,
+        step_deg: 0.5,
     };
     let rules = small(&[]);
     let labels = stage.drive(&[0.0]).label(&rules);
 
     let [dark, lit, occupied] = stage.check_still(&labels, &rules);
-    assert!(dark > 800 && lit > 1000 && occupied > 350, "{dark}, {lit}, {occupied}");
+    assert!(dark > 700 && lit > 1000 && occupied > 300, "{dark}, {lit}, {occupied}");
+    let mut grounded = 0;
     for (x, y) in (0..24).flat_map(|x| (0..16).map(move |y| (x, y))) {
         let column: String = (0..6).map(|z| class_at(&labels, [x, y, z])).collect();
         let expected = match x {
@@ -181,9 +182,13 @@ fn ground_on_two_levels_is_ground_on_both() {
             12 => "?*--..",
             _ => "???-..",
         };
-        let fits = |(found, expected): (char, char)| expected == '*' || found == expected;
+        // Far away, rays are too few to hit every voxel of the ground.
+        let fits =
+            |(found, expected): (char, char)| expected == '*' || found == expected || found == '.';
         assert!(column.chars().zip(expected.chars()).all(fits), "column ({x}, {y}): {column}");
+        grounded += usize::from(column.contains(['=', '-']));
     }
+    assert!(grounded > 300, "ground in {grounded} of 384 columns");
     let views = [beside(&labels, 8), above(&labels, 2)];
     assert_golden("geometry/two-levels.txt", &picture("A road, and ground 1 m above it.", &views));
 }
@@ -198,7 +203,7 @@ fn section_10_a_camera_sees_over_a_wall_what_is_not_right_behind_it() {
         map_from_ego: &ahead,
         sweeps_s: &[0.0, 0.5],
         annotated_s: &[],
-        step_deg: 1.0,
+        step_deg: 0.5,
     };
     let rules = small(&[]);
     let eye = Point3::new(0.2, 0.1, 1.7);
@@ -244,7 +249,7 @@ fn with_camera(mut drive: Drive, eye: &Point3<f64>) -> Drive {
 
 // ---- What moves --------------------------------------------------------------------------------
 
-const CAR_HALF_M: [f64; 3] = [2.1, 0.95, 0.65];
+const CAR_HALF_M: [f64; 3] = [2.1, 0.95, 0.5];
 /// Ten sweeps a second, half a second to both sides.
 const SWEEPS_S: [f64; 11] = [-0.5, -0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4, 0.5];
 /// Two annotations a second.
@@ -275,7 +280,7 @@ fn a_car_at_constant_speed_leaves_no_trail_and_keeps_its_shape() {
     let world = |time: f64| road_with(&[car_at(5.0 + 4.0 * time, 1.9, 0.0)]);
     let labels = moving_car_is_sharp(&drive_by(&world));
     let title = "A car at 4 m/s, in 11 sweeps over a second; the ego drives 2 m/s and turns.";
-    let views = [above(&labels, 2), above(&labels, 4), beside(&labels, 11)];
+    let views = [above(&labels, 2), above(&labels, 3), beside(&labels, 11)];
     assert_golden("geometry/car.txt", &picture(title, &views));
 }
 
@@ -285,7 +290,7 @@ fn a_turning_car_leaves_no_trail_and_keeps_its_shape() {
         |time: f64| road_with(&[car_at(5.5 + 3.0 * time, 0.4 + 2.0 * time, 0.5 + 0.9 * time)]);
     let labels = moving_car_is_sharp(&drive_by(&world));
     let title = "A car at 3.6 m/s that turns with 0.9 rad/s, in 11 sweeps over a second.";
-    let views = [above(&labels, 2), above(&labels, 4)];
+    let views = [above(&labels, 2), above(&labels, 3)];
     assert_golden("geometry/turning-car.txt", &picture(title, &views));
 }
 
@@ -296,7 +301,7 @@ fn moving_car_is_sharp(stage: &Stage) -> OccupancyLabels {
     let drive = stage.drive(&[0.0]);
     let labels = drive.label(&rules);
     let occupied = stage.check_no_trail(&labels, &rules, 0.0);
-    let passed = stage.check_way_is_free(&labels, &rules, 0.0);
+    let passed = stage.free_on_the_way(&labels, &rules, 0.0);
     let shape = voxels_of_car(stage, &rules);
     assert_eq!(
         instances_above_ground(&labels, 1),
@@ -311,7 +316,7 @@ fn moving_car_is_sharp(stage: &Stage) -> OccupancyLabels {
     let other_air = drive.label(&small(&["raycast.same_time_s=10"]));
     assert!(crossed(&other_air) > inside.len() / 2, "other sweeps looked through where it is now");
     let sizes = (occupied, passed, shape.len(), inside.len());
-    assert!(occupied > 300 && passed > 40 && shape.len() > 50 && inside.len() > 15, "{sizes:?}");
+    assert!(occupied > 300 && passed > 40 && shape.len() > 40 && inside.len() > 10, "{sizes:?}");
     labels
 }
 
@@ -352,26 +357,30 @@ fn interior(stage: &Stage, rules: &Rules) -> Vec<[usize; 3]> {
 #[test]
 fn a_parked_car_is_a_car_of_speed_zero() {
     let world = |_| road_with(&[car_at(5.0, 1.9, 0.2)]);
-    let annotated_at = |times: &[f64]| {
-        let annotated_s: &[&[f64]] = &[times];
-        let rules = small(&["boxes.extrapolate_s=1.0"]);
-        (Stage { annotated_s, ..drive_by(&world) }).drive(&[0.0]).label(&rules)
-    };
-    let parked = annotated_at(&[-0.5, 0.0, 0.5]);
-    same_arrays(&annotated_at(&SWEEPS_S), &parked, "annotated in every sweep");
-    assert_eq!(parked.evidence.flow.values().iter().filter(|v| **v != [0.0; 3]).count(), 0);
+    let rules = small(&["boxes.extrapolate_s=1.0"]);
+    let drive_annotated_at =
+        |annotated_s: &[&[f64]]| (Stage { annotated_s, ..drive_by(&world) }).drive(&[0.0]);
+    let annotated_at = |times: &[f64]| drive_annotated_at(&[times]).label(&rules);
+    let parked = annotated_at(&ANNOTATED_S);
+    same_but_flow(&annotated_at(&SWEEPS_S), &parked, "annotated in every sweep");
+    let is_still = |v: &[f32; 3]| v.iter().all(|c| c.abs() < 1e-6);
+    assert!(parked.evidence.flow.values().iter().all(is_still));
 
     let lone = annotated_at(&[0.0]);
-    assert_eq!(lone.semantics, parked.semantics, "one annotation is held still");
-    assert_eq!(lone.evidence.crossings, parked.evidence.crossings);
+    same_but_flow(&lone, &parked, "one annotation is held still");
     assert!(lone.evidence.flow.values().iter().any(|v| v[0].is_nan()), "but tells no velocity");
 
-    let untracked =
-        (Stage { annotated_s: &[], ..drive_by(&world) }).drive(&[0.0]).label(&small(&[]));
-    assert_eq!(untracked.evidence.hits, parked.evidence.hits, "as if it were a house");
-    assert_eq!(untracked.semantics, parked.semantics);
-    assert_eq!(untracked.evidence.state, parked.evidence.state);
-    assert!(instances_above_ground(&parked, 1).len() > 50);
+    let any_time = small(&["raycast.same_time_s=10"]);
+    let house = drive_annotated_at(&[]).label(&any_time);
+    let parked_any_time = drive_annotated_at(&[&ANNOTATED_S]).label(&any_time);
+    assert!(house.evidence.hits == parked.evidence.hits, "hits, as if it were a house");
+    assert!(house.semantics == parked.semantics, "classes, as if it were a house");
+    assert!(
+        house.evidence.state == parked_any_time.evidence.state,
+        "states, as if it were a house"
+    );
+    let shape = instances_above_ground(&parked, 1).len();
+    assert!(shape > 30, "{shape} voxels");
 }
 
 #[test]
@@ -431,7 +440,7 @@ fn smears_where_it_was(stage: &Stage, labels: &OccupancyLabels, absent_s: &[f64]
             smears.iter_mut().zip(held).for_each(|(count, held)| *count += usize::from(held));
         }
     }
-    assert!(smears.iter().all(|&count| count > 15), "{smears:?} voxels at {absent_s:?}");
+    assert!(smears.iter().all(|&count| count > 5), "{smears:?} voxels at {absent_s:?}");
 }
 
 #[test]
@@ -446,7 +455,7 @@ fn section_4_of_two_overlapping_boxes_the_smaller_takes_the_points() {
     let annotated: &[f64] = &[0.0];
     let annotated_s = &[annotated; 4];
     let stage =
-        Stage { world: &world, map_from_ego: STILL, sweeps_s: &[0.0], annotated_s, step_deg: 1.0 };
+        Stage { world: &world, map_from_ego: STILL, sweeps_s: &[0.0], annotated_s, step_deg: 0.5 };
     let rules = small(&[]);
     let labels = stage.drive(&[0.0]).label(&rules);
 

@@ -66,6 +66,9 @@ fn section_12_neither_order_nor_shards_change_the_counts() {
         *points.borrow_mut() += case.background.iter().map(|sweep| sweep.rays.len()).sum::<usize>();
         let counts = case.count(1);
         *crossings.borrow_mut() += counts.crossings.values().iter().map(|&n| u64::from(n)).sum::<u64>();
+        let oracle = Oracle::of(&case);
+        prop_assert_eq!(case.dense(&oracle.hits), counts.hits.values(), "hits");
+        prop_assert_eq!(case.dense(&oracle.crossings), counts.crossings.values(), "crossings");
         for shards in 2..9 {
             prop_assert_eq!(&case.count(shards), &counts, "{} shards", shards);
         }
@@ -563,9 +566,13 @@ fn background() -> impl Strategy<Value = Background> {
     })
 }
 
+/// Longer than wide or high, most of them.
 fn box_size() -> impl Strategy<Value = Vector3<f64>> {
-    let side = || prop_oneof![(1..7).prop_map(|i| f64::from(i) * 0.5), 0.2..3.0_f64];
-    [side(), side(), side()].prop_map(Vector3::from)
+    let side = |longest_m: i32| {
+        let whole = (1..=2 * longest_m).prop_map(|i| f64::from(i) * 0.5);
+        prop_oneof![whole, 0.2..f64::from(longest_m)]
+    };
+    (side(6), side(2), side(2)).prop_map(|(x, y, z)| Vector3::new(x, y, z))
 }
 
 /// Shares of the grown box along each axis, its faces among them.

@@ -157,7 +157,7 @@ fn section_8_near_is_the_sum_over_the_axes() {
 
 #[test]
 fn section_8_near_rules_hold_at_exact_multiples() {
-    assert!(3.0 * 0.4 > 1.2, "in binary the third voxel lies beyond");
+    // In binary 3 * 0.4 is more than 1.2: the third voxel lies beyond.
     let spec = row(10, 0.4);
     let long = || ray([3.8, 0.2, 0.2], [0.2, 0.2, 0.2], POLE);
     let hit = RaySettings { ignore_near_hit_m: 1.2, ..PLAIN };
@@ -178,7 +178,7 @@ fn section_8_rays_that_end_on_flat_count_nothing_beside_the_ground() {
 
 #[test]
 fn section_8_the_flat_rule_holds_at_exact_multiples() {
-    assert!(6.0 * 0.15 < 0.9, "in binary the sixth voxel lies within");
+    // In binary 6 * 0.15 is less than 0.9: the sixth voxel lies within.
     let rule = RaySettings { flat_ignore_dz_m: 0.9, ..PLAIN };
     let ray = ray([0.075, 0.075, 1.125], [0.075, 0.075, 0.075], ROAD);
     assert_eq!(crossings(ray, &column(8, 0.15), &rule), [0, 0, 0, 0, 0, 0, 1, 1]);
@@ -373,6 +373,16 @@ fn section_8_the_same_time_is_closed_and_counts_in_boxes_too() {
         assert_eq!(counts.crossings.values(), expected, "{after} ns");
         assert_eq!(counts.hits.values()[2], 1, "{after} ns: hits stay");
     }
+}
+
+#[test]
+fn section_8_air_of_another_time_is_forgotten_to_the_ends_of_a_long_box() {
+    let scene = scene(vec![(9_000_000_000, along_x(20.5, -5.5))]);
+    let boxed = Box3 { size_m: Vector3::new(10.0, 0.8, 0.8), ..car_box(6.5) };
+    let bus = StandingBox { grown: grown(&boxed), boxed, ..standing(6.5) };
+    let instant = Instant { time: Timestamp(NOW), standing: vec![bus], ..Instant::still(&scene) };
+    let counts = cast(&instant, &row(14, 1.0), &PLAIN);
+    assert_eq!(counts.crossings.values(), [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Which moments of a scene become keyframes.
 
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Timestamp};
@@ -59,12 +60,7 @@ impl<'a> KeySweeps<'a> {
         reference: &str,
         notes: &mut Notes,
     ) -> Self {
-        let mut sweep_of = HashMap::new();
-        for (place, sweep) in sweeps.iter().enumerate() {
-            if sweep.row.is_key_frame && sweep.channel == reference {
-                sweep_of.entry(&sweep.row.sample_token).or_insert(place);
-            }
-        }
+        let sweep_of = first_keys(sweeps, reference, notes);
         let time = |sample: &'a Row<Sample>| match sweep_of.get(&sample.token) {
             Some(&place) => sweeps[place].time,
             None => {
@@ -87,6 +83,26 @@ impl<'a> KeySweeps<'a> {
     pub(super) fn time(&self, sample: &Token) -> Option<Timestamp> {
         self.times.get(sample).copied()
     }
+}
+
+/// By sample: the place of the reference lidar's first key sweep. A second one is noted.
+fn first_keys<'a>(
+    sweeps: &[Capture<'a>],
+    reference: &str,
+    notes: &mut Notes,
+) -> HashMap<&'a Token, usize> {
+    let is_key = |sweep: &Capture<'_>| sweep.row.is_key_frame && sweep.channel == reference;
+    let mut first = HashMap::new();
+    for (place, sweep) in sweeps.iter().enumerate().filter(|(_, sweep)| is_key(sweep)) {
+        match first.entry(&sweep.row.sample_token) {
+            Entry::Vacant(entry) => drop(entry.insert(place)),
+            Entry::Occupied(_) => {
+                let expected = format!("one key sweep of {reference} a sample");
+                notes.warn(sweep.row.fault("key-sweep-repeated", expected, "a later one"));
+            }
+        }
+    }
+    first
 }
 
 /// The moments that the settings choose, in order of time.

@@ -33,23 +33,25 @@ pub(super) enum LabelEncoding {
 
 /// A table of label files.
 trait LabelTable: Table {
+    /// How its files hold labels.
     const ENCODING: LabelEncoding;
-    fn sweep_and_file(row: &Row<Self>) -> (&Token, &str);
+    /// The sweep's token, and its labels' file.
+    fn sweep_and_file(&self) -> (&Token, &str);
 }
 
 impl LabelTable for Lidarseg {
     const ENCODING: LabelEncoding = LabelEncoding::Lidarseg;
 
-    fn sweep_and_file(row: &Row<Self>) -> (&Token, &str) {
-        (&row.sample_data_token, &row.filename)
+    fn sweep_and_file(&self) -> (&Token, &str) {
+        (&self.sample_data_token, &self.filename)
     }
 }
 
 impl LabelTable for Panoptic {
     const ENCODING: LabelEncoding = LabelEncoding::Panoptic;
 
-    fn sweep_and_file(row: &Row<Self>) -> (&Token, &str) {
-        (&row.sample_data_token, &row.filename)
+    fn sweep_and_file(&self) -> (&Token, &str) {
+        (&self.sample_data_token, &self.filename)
     }
 }
 
@@ -73,7 +75,7 @@ fn read_one<T: LabelTable>(folder: &Path) -> Result<LabelFiles, Fault> {
         folder,
         |_| Ok(true),
         |row: Row<T>| {
-            let (sweep, file) = T::sweep_and_file(&row);
+            let (sweep, file) = row.sweep_and_file();
             if let Some(defect) = name_defect(file) {
                 return Err(row.fault("file-name", "a path below the log's root", defect));
             }

@@ -6,6 +6,7 @@
 
 mod cameras;
 mod captures;
+mod copies;
 mod files;
 mod keyframes;
 mod label_files;

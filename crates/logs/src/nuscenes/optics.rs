@@ -36,21 +36,29 @@ pub(super) fn camera_of(root: &Path, image: &Capture<'_>) -> Result<Camera, Faul
 
 fn model_of(calibration: &Row<CalibratedSensor>) -> Result<CameraModel, Fault> {
     let name = calibration.camera_model.as_deref().unwrap_or("pinhole");
-    let distortion = reals(calibration.camera_distortion.as_deref().unwrap_or_default());
-    let model = match name {
-        "pinhole" => pinhole(calibration, &distortion),
-        "brown-conrady" => intrinsics(calibration)
-            .and_then(|k| Ok(CameraModel::BrownConrady(BrownConrady::new(k, &distortion)?))),
-        "kannala-brandt" => intrinsics(calibration)
-            .and_then(|k| Ok(CameraModel::KannalaBrandt(KannalaBrandt::new(k, &distortion)?))),
-        "mei" => {
-            intrinsics(calibration).and_then(|k| Ok(CameraModel::Mei(Mei::new(k, &distortion)?)))
-        }
-        "ocam" => ocam(calibration.ocam.as_ref()),
-        _ => Err("none of pinhole, brown-conrady, kannala-brandt, mei, ocam".into()),
-    };
     let expected = format!("a calibration of the camera model `{name}`");
-    model.map_err(|Defect(found)| calibration.fault("camera-model", expected, found))
+    let refuse = |Defect(found)| calibration.fault("camera-model", expected, found);
+    model_named(name, calibration).map_err(refuse)
+}
+
+fn model_named(name: &str, calibration: &CalibratedSensor) -> Result<CameraModel, Defect> {
+    let distortion = reals(calibration.camera_distortion.as_deref().unwrap_or_default());
+    let intrinsics = || intrinsics(&calibration.camera_intrinsic);
+    Ok(match name {
+        "pinhole" if distortion.iter().any(|coefficient| *coefficient != 0.0) => {
+            return Err("a distortion, which needs another `camera_model`".into());
+        }
+        "pinhole" => CameraModel::Pinhole(Pinhole::new(intrinsics()?)),
+        "brown-conrady" => {
+            CameraModel::BrownConrady(BrownConrady::new(intrinsics()?, &distortion)?)
+        }
+        "kannala-brandt" => {
+            CameraModel::KannalaBrandt(KannalaBrandt::new(intrinsics()?, &distortion)?)
+        }
+        "mei" => CameraModel::Mei(Mei::new(intrinsics()?, &distortion)?),
+        "ocam" => CameraModel::Ocam(ocam(calibration.ocam.as_ref())?),
+        _ => return Err("none of pinhole, brown-conrady, kannala-brandt, mei, ocam".into()),
+    })
 }
 
 /// What is wrong with a calibration.
@@ -68,32 +76,20 @@ impl From<&str> for Defect {
     }
 }
 
-fn pinhole(calibration: &Row<CalibratedSensor>, distortion: &[f64]) -> Result<CameraModel, Defect> {
-    match distortion.iter().all(|coefficient| *coefficient == 0.0) {
-        true => Ok(CameraModel::Pinhole(Pinhole::new(intrinsics(calibration)?))),
-        false => Err("a distortion, which needs another `camera_model`".into()),
+fn intrinsics(rows: &[Vec<Number>]) -> Result<Intrinsics, Defect> {
+    let triples = rows.iter().map(|row| <[f64; 3]>::try_from(reals(row)));
+    let triples = triples.collect::<Result<Vec<_>, _>>().unwrap_or_default();
+    match <[[f64; 3]; 3]>::try_from(triples) {
+        Ok(matrix) => Ok(Intrinsics::from_matrix(&matrix)?),
+        Err(_) => Err("a `camera_intrinsic` that is not 3 x 3".into()),
     }
 }
 
-fn intrinsics(calibration: &Row<CalibratedSensor>) -> Result<Intrinsics, Defect> {
-    let rows: Vec<[f64; 3]> = calibration
-        .camera_intrinsic
-        .iter()
-        .filter_map(|row| <[f64; 3]>::try_from(reals(row)).ok())
-        .collect();
-    match <[[f64; 3]; 3]>::try_from(rows) {
-        Ok(matrix) if calibration.camera_intrinsic.len() == 3 => {
-            Ok(Intrinsics::from_matrix(&matrix)?)
-        }
-        _ => Err("a `camera_intrinsic` that is not 3 x 3".into()),
-    }
-}
-
-fn ocam(fields: Option<&OcamFields>) -> Result<CameraModel, Defect> {
+fn ocam(fields: Option<&OcamFields>) -> Result<Ocam, Defect> {
     let Some(fields) = fields else { return Err("no field `ocam`".into()) };
     let (poly, centre, affine) =
         (reals(&fields.poly), plain(&fields.centre), plain(&fields.affine));
-    Ok(CameraModel::Ocam(Ocam::new(&poly, centre, affine, fields.max_angle_rad.0)?))
+    Ok(Ocam::new(&poly, centre, affine, fields.max_angle_rad.0)?)
 }
 
 fn reals(numbers: &[Number]) -> Vec<f64> {

@@ -41,10 +41,11 @@ pub(super) fn decode_points(
     columns: Option<PointColumns>,
 ) -> Result<(Vec<Point3<f64>>, Vec<Fault>), Fault> {
     let stride = columns.unwrap_or(PointColumns::Five);
-    if bytes.len() % stride.bytes() != 0 {
+    if !bytes.len().is_multiple_of(stride.bytes()) {
         return Err(wrong_length(bytes.len(), file, stride));
     }
-    if columns.is_none() && bytes.len() % PointColumns::Four.bytes() == 0 && !has_rings(bytes) {
+    let fits_four = bytes.len().is_multiple_of(PointColumns::Four.bytes());
+    if columns.is_none() && fits_four && !has_rings(bytes) {
         let found = "a fifth column that is mostly no ring";
         return Err(four_columns(Fault::new("sweep-columns", file, "five columns", found)));
     }
@@ -76,7 +77,7 @@ fn wrong_length(bytes: usize, file: &str, columns: PointColumns) -> Fault {
     let expected = format!("a multiple of {each} bytes ({count} columns)");
     let found = format!("{bytes} bytes, {} more than {} points", bytes % each, bytes / each);
     let fault = Fault::new("sweep-length", file, expected, found);
-    match columns == PointColumns::Five && bytes % PointColumns::Four.bytes() == 0 {
+    match columns == PointColumns::Five && bytes.is_multiple_of(PointColumns::Four.bytes()) {
         true => four_columns(fault),
         false => fault,
     }

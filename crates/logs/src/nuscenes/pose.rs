@@ -61,7 +61,7 @@ impl<T: Placed> Row<T> {
         }
         let rotation = quaternion(plain(rotation), order);
         let off = (rotation.norm() - 1.0).abs();
-        if !(off <= LARGEST_NORM_ERROR) {
+        if off.is_nan() || off > LARGEST_NORM_ERROR {
             let expected = format!("a quaternion of norm 1 to {LARGEST_NORM_ERROR}");
             return Err(self.fault("quaternion-norm", expected, norm(&rotation)));
         }

@@ -5,10 +5,11 @@ use occlabel_core::{Fault, Keyframe, Loss, Scene, SweepHeader};
 use super::NuScenesLog;
 use super::cameras::{SceneCamera, exposures, scene_cameras};
 use super::captures::Captures;
+use super::copies::without_copies;
 use super::keyframes::{KeySweeps, Moment, moments, reference_lidar};
 use super::notes::Notes;
 use super::raw_labels::RawLabels;
-use super::sweeps::{report_jumps, sweep_headers, without_copies};
+use super::sweeps::{report_jumps, sweep_headers};
 use super::tables::SceneRows;
 use super::tracks::scene_tracks;
 
@@ -17,7 +18,7 @@ pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, 
     let (settings, mut notes) = (&log.options.keyframes, Notes::default());
     let captures = Captures::of_scene(&log.tables, rows)?;
     report_jumps(&captures.lidars, &mut notes);
-    let sweeps = without_copies(captures.lidars, &log.root, &mut notes);
+    let sweeps = without_copies(&captures.lidars, &log.root, &mut notes);
     let reference = reference_lidar(settings, &rows.name, &sweeps)?;
     let keys = KeySweeps::find(&rows.samples, &sweeps, &reference, &mut notes);
     let moments = moments(settings, &sweeps, &reference, &keys)?;

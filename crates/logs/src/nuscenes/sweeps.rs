@@ -1,13 +1,11 @@
 //! The sweeps of a scene.
 
 use std::collections::HashMap;
-use std::path::Path;
 
 use occlabel_core::{Fault, Loss, Pose, SweepHeader};
 
 use super::NuScenesLog;
 use super::captures::Capture;
-use super::files::read_file;
 use super::notes::Notes;
 use super::token::Token;
 
@@ -23,50 +21,6 @@ pub(super) fn report_jumps(sweeps: &[Capture<'_>], notes: &mut Notes) {
             notes.warn(sweep.row.fault("time-backwards", "a `next` later in time", found));
         }
     }
-}
-
-/// The sweeps without repetitions: of those of one lidar and time that hold the same bytes, one
-/// stays, the key frame's if one is. Others of one lidar and time all stay. Both is noted.
-pub(super) fn without_copies<'a>(
-    sweeps: Vec<Capture<'a>>,
-    root: &Path,
-    notes: &mut Notes,
-) -> Vec<Capture<'a>> {
-    let mut kept: Vec<Capture<'a>> = Vec::with_capacity(sweeps.len());
-    for moment in sweeps.chunk_by(|a, b| (a.time, a.channel) == (b.time, b.channel)) {
-        let begin = kept.len();
-        for &sweep in moment {
-            let copied = kept[begin..].iter_mut().find(|other| is_copy(root, other, &sweep));
-            let found = match copied {
-                Some(other) if sweep.row.is_key_frame => std::mem::replace(other, sweep),
-                Some(_) => sweep,
-                None => {
-                    kept.push(sweep);
-                    continue;
-                }
-            };
-            notes.warn(repeated(&found, "another of the same bytes, which is left out"));
-        }
-        for other in kept.iter().skip(begin + 1) {
-            notes.warn(repeated(other, "another of other bytes: both are kept"));
-        }
-    }
-    kept.sort_by_key(Capture::order);
-    kept
-}
-
-fn repeated(sweep: &Capture<'_>, found: &str) -> Fault {
-    sweep.row.fault("time-repeated", "one sweep of a lidar at a time", found)
-}
-
-/// Whether one of two sweeps can go: not if both are key frames', or a file cannot be read.
-fn is_copy(root: &Path, a: &Capture<'_>, b: &Capture<'_>) -> bool {
-    let same_bytes = || match (read_file(root, &a.row.filename), read_file(root, &b.row.filename)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    };
-    let both_key = a.row.is_key_frame && b.row.is_key_frame;
-    !both_key && (a.row.filename == b.row.filename || same_bytes())
 }
 
 /// The headers of the readable sweeps, each with its place among `sweeps`. A sweep without a usable

@@ -1,6 +1,6 @@
 //! The tracks of a scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use nalgebra::Vector3;
 use occlabel_core::{Box3, BoxTrack, Fault, Loss, Meaning, Timestamp, TrackId};
@@ -11,7 +11,7 @@ use super::notes::Notes;
 use super::number::plain;
 use super::pose::QuaternionOrder;
 use super::rows::{Category, Instance, SampleAnnotation};
-use super::table::{Row, Table};
+use super::table::{Row, Table, repeated};
 use super::tables::SceneRows;
 
 /// An instance's boxes, as they come.
@@ -53,7 +53,11 @@ fn boxes_by_instance<'a>(
 ) -> Result<BTreeMap<String, Boxes<'a>>, Fault> {
     let tables = &log.tables;
     let mut instances: BTreeMap<String, Boxes<'a>> = BTreeMap::new();
+    let mut tokens = HashSet::new();
     for row in &rows.annotations {
+        if !tokens.insert(&row.token) {
+            return Err(row.located(repeated::<SampleAnnotation>()));
+        }
         let instance = row.follow(&tables.instances, &row.instance_token)?;
         let category = &instance.follow(&tables.categories, &instance.category_token)?.name;
         let Some(time) = keys.time(&row.sample_token) else { continue };

@@ -183,7 +183,7 @@ fn fault_15_a_copy_of_a_sweep_is_left_out_the_key_frames_own_stays() {
     let scene = log.scene();
     assert_eq!(files(&scene), ["l0", "l1", "l2"]);
     assert_eq!(tokens(&scene), ["s0", "s1"]);
-    assert_eq!(rules(&scene.warnings), ["time-repeated"]);
+    assert_eq!(rules(&scene.warnings), ["sweep-copied"]);
     assert!(scene.warnings[0].to_string().contains("(copy, at byte"), "{}", scene.warnings[0]);
 }
 
@@ -200,6 +200,30 @@ fn fault_15_different_sweeps_of_one_time_are_both_kept_in_order_of_their_files()
     assert_eq!(files(&scene), ["l0", "other", "l1", "l2"]);
     assert_eq!(rules(&scene.warnings), ["time-repeated"]);
     assert!(scene.warnings[0].found.contains("both are kept"));
+}
+
+#[test]
+fn section_2_of_two_key_sweeps_of_a_sample_the_first_counts() {
+    let mut log = TinyLog::new();
+    log.row("sample_data", "l1")["is_key_frame"] = json!(true);
+    let scene = log.scene();
+    assert_eq!(tokens(&scene), ["s0", "s1"]);
+    assert_eq!(scene.keyframes[1].time, Timestamp::from_micros(1_250_000));
+    assert_eq!(rules(&scene.warnings), ["key-sweep-repeated"]);
+    log.keyframes.source = KeyframeSource::Sweeps;
+    assert_eq!(tokens(&log.scene()), ["s0", "s1", "l2"]);
+}
+
+#[test]
+fn fault_15_a_whole_scene_of_one_stamp_is_read_once_and_sorted_by_file() {
+    let mut log = TinyLog::new();
+    for token in ["l0", "l1", "l2"] {
+        log.row("sample_data", token)["timestamp"] = json!(0);
+    }
+    log.tables.get_mut("sample_annotation").unwrap().pop();
+    let scene = log.scene();
+    assert_eq!((files(&scene), tokens(&scene)), (vec!["l0", "l1", "l2"], vec!["s0", "s1"]));
+    assert!(scene.warnings[0].to_string().contains("the first of 2 such records"));
 }
 
 #[test]

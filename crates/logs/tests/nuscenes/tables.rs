@@ -113,6 +113,7 @@ fn fault_31_duplicate_tokens_are_told_by_table_and_token() {
         ("sensor", "sensor-lidar"),
         ("instance", "i0"),
         ("category", "cat-car"),
+        ("sample_annotation", "a0"),
     ] {
         let mut log = TinyLog::new();
         let change = if table == "scene" { ("name", json!("scene-0002")) } else { ("x", json!(1)) };

@@ -9,7 +9,9 @@ mod settings;
 mod stage;
 
 pub(crate) use body::{Body, cast, is_lit, overlap, road_in_a_hall, slab};
-pub(crate) use drive::{Drive, at, camera, header, looking_ahead, same_arrays, track};
+pub(crate) use drive::{
+    Drive, at, camera, header, looking_ahead, same_arrays, same_but_flow, track,
+};
 pub(crate) use lidar::{directions, look};
 pub(crate) use picture::{LEGEND, class_at, from_above, from_the_left};
 pub(crate) use settings::{large, rules, small};

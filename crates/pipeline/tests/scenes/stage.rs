@@ -128,32 +128,27 @@ impl Stage<'_> {
         occupied
     }
 
-    /// Places that moving bodies pass in some sweep but not at the keyframe: all must be free.
-    /// Returns how many there are.
-    #[track_caller]
-    pub(crate) fn check_way_is_free(
+    /// How many voxels are free that moving bodies pass in some sweep, but not at the keyframe.
+    pub(crate) fn free_on_the_way(
         &self,
         labels: &OccupancyLabels,
         rules: &Rules,
         keyframe_s: f64,
     ) -> usize {
-        let now = (self.world)(keyframe_s);
-        let passing: Vec<Body> = self
-            .sweeps_s
-            .iter()
-            .flat_map(|&time| (self.world)(time))
-            .filter(|b| b.track.is_some())
-            .collect();
-        let mut passed = 0;
-        for (voxel, body) in self.voxels(rules, keyframe_s) {
-            let centre = body.map_from_body.translation.vector.into();
-            let is_passed = passing.iter().any(|other| other.contains(&centre));
-            if is_passed && !solid(&now).any(|other| overlap(&body, &other.grown(0.01))) {
-                assert_eq!(*labels.evidence.state.at(voxel), FREE, "{voxel:?} is passed");
-                passed += 1;
-            }
-        }
-        passed
+        let moving = |time| (self.world)(time).into_iter().filter(|body| body.track.is_some());
+        let now: Vec<Body> = moving(keyframe_s).collect();
+        let passing: Vec<Body> = self.sweeps_s.iter().flat_map(|&time| moving(time)).collect();
+        let is_on_the_way = |voxel: &Body| {
+            let centre = voxel.map_from_body.translation.vector.into();
+            passing.iter().any(|body| body.contains(&centre))
+                && !now.iter().any(|body| overlap(voxel, body))
+        };
+        let voxels = self.voxels(rules, keyframe_s).into_iter();
+        voxels
+            .filter(|(voxel, body)| {
+                *labels.evidence.state.at(*voxel) == FREE && is_on_the_way(body)
+            })
+            .count()
     }
 }
 
