@@ -3,6 +3,8 @@
 use nalgebra::Point3;
 use occlabel_core::{Camera, Pose};
 
+use crate::OcclusionSettings;
+
 /// A camera where it stood when it was exposed.
 #[derive(Clone, Debug)]
 pub struct Eye<'a> {
@@ -18,6 +20,16 @@ impl Eye<'_> {
     /// Where it stood, grid frame.
     pub(crate) fn position(&self) -> Point3<f64> {
         self.grid_from_camera.translation.vector.into()
+    }
+
+    /// Whether a point of the grid frame is in view: near enough, before the lens, on the image, and
+    /// not behind the camera's own body.
+    ///
+    /// The way to the point is taken before it is turned, so that distances stay exact.
+    pub(crate) fn has_in_view(&self, p: &Point3<f64>, settings: &OcclusionSettings) -> bool {
+        let way = p - self.position();
+        let in_camera = || Point3::from(self.grid_from_camera.rotation.inverse() * way);
+        way.norm() <= settings.depth_max_m && self.camera.pixel_of(&in_camera()).is_some()
     }
 
     /// The far ends of rays through every `stride`-th pixel of each row and column, grid frame.

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use occlabel_core::{
-    ClassSet, GridSpec, LatticePoint, RigidMap, VoxelGrid, VoxelIndex, VoxelState, VoxelVote, walk,
+    ClassSet, GridSpec, LatticePoint, VoxelGrid, VoxelIndex, VoxelState, VoxelVote, walk,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -108,7 +108,12 @@ fn seen_by(
             look.along(spec.snap(&end));
         }
     }
-    look.at_voxels_in_view(eye, settings);
+    for flat in 0..spec.len() {
+        let (is_target, is_plain) = (look.is_target(flat, settings.rays), look.is_plain(flat));
+        if (is_target || is_plain) && eye.has_in_view(&spec.centre(spec.voxel_at(flat)), settings) {
+            look.at(flat, is_target);
+        }
+    }
     look.seen
 }
 
@@ -122,32 +127,27 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// Looks at the centres of voxels in view, as far as the settings ask for it.
-    fn at_voxels_in_view(&mut self, eye: &Eye, settings: &OcclusionSettings) {
-        let camera_from_grid = RigidMap::from(&eye.grid_from_camera.inverse());
-        for flat in 0..self.spec.len() {
-            let is_ground_seen_through =
-                self.occluders == Occluders::NonFlat && self.matter[flat] == Matter::Ground;
-            let is_target = match settings.rays {
-                CameraRays::AllCenters => true,
-                CameraRays::OccupiedCenters => self.matter[flat] != Matter::Air,
-                CameraRays::Pixels => false,
-            };
-            if !is_target && !is_ground_seen_through {
-                continue;
-            }
-            let voxel = self.spec.voxel_at(flat);
-            let centre = camera_from_grid.apply(&self.spec.centre(voxel));
-            let is_near = centre.coords.norm() <= settings.depth_max_m;
-            if !is_near || eye.camera.pixel_of(&centre).is_none() {
-                continue;
-            }
-            if is_ground_seen_through {
-                self.seen.values_mut()[flat] = true;
-            }
-            if is_target {
-                self.along(self.spec.lattice_centre(voxel));
-            }
+    /// Whether a ray is cast to the centre of a voxel that is in view.
+    fn is_target(&self, flat: usize, rays: CameraRays) -> bool {
+        match rays {
+            CameraRays::AllCenters => true,
+            CameraRays::OccupiedCenters => self.matter[flat] != Matter::Air,
+            CameraRays::Pixels => false,
+        }
+    }
+
+    /// Whether a voxel is seen wherever it is in view.
+    fn is_plain(&self, flat: usize) -> bool {
+        self.occluders == Occluders::NonFlat && self.matter[flat] == Matter::Ground
+    }
+
+    /// Looks at a voxel in view.
+    fn at(&mut self, flat: usize, is_target: bool) {
+        if self.is_plain(flat) {
+            self.seen.values_mut()[flat] = true;
+        }
+        if is_target {
+            self.along(self.spec.lattice_centre(self.spec.voxel_at(flat)));
         }
     }
 

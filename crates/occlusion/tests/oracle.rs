@@ -401,7 +401,7 @@ prop_compose! {
     }
 }
 
-/// A pinhole, or an OCam of half the image's height for 45 degrees and beyond the horizon.
+/// A pinhole, or an OCam that sees to beyond 90 degrees.
 fn seer() -> impl Strategy<Value = Seer> {
     (3_u32..24, 3_u32..18)
         .prop_flat_map(|(w, h)| (Just((w, h)), body(w, h), 1.5..10.0_f64, prop::bool::ANY, pose()))

@@ -5,6 +5,7 @@ mod body;
 mod drive;
 mod lidar;
 mod picture;
+pub(crate) mod random;
 mod settings;
 mod stage;
 

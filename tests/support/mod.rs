@@ -1,0 +1,15 @@
+//! A log in a temporary folder, the program run on it, and the tree it leaves. Each test file uses
+//! its own part.
+#![allow(dead_code, unused_imports)]
+
+mod npz_dates;
+mod program;
+mod test_log;
+mod tree;
+
+pub(crate) use npz_dates::npz_dates;
+pub(crate) use program::{Ended, Label, SMALL, occlabel, text};
+pub(crate) use test_log::{LIDAR_FILE_BYTES, NAN, Point, SCENE, TestLog, VERSION, nano_spec};
+pub(crate) use tree::{
+    Arrays, files_under, gts_files, leftovers, manifest, read_arrays, report, tree_hash,
+};
