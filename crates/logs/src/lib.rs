@@ -19,8 +19,10 @@
 //! [`Scene`]: occlabel_core::Scene
 //! [`Fault`]: occlabel_core::Fault
 
+mod inventory;
 mod nuscenes;
 mod source;
 
-pub use nuscenes::{MissingFile, NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder};
+pub use inventory::{Inventory, MissingFile};
+pub use nuscenes::{NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder};
 pub use source::{ReaderDefaults, SceneSource, SweepPoints};

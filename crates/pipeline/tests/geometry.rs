@@ -6,10 +6,10 @@
 
 mod scenes;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Point3, Vector3};
-use occlabel_core::{OccupancyLabels, Pose};
+use occlabel_core::{OccupancyLabels, PointLabel, Pose};
 use occlabel_pipeline::Rules;
 use occlabel_testkit::assert_golden;
 use scenes::{
@@ -249,15 +249,16 @@ fn with_camera(mut drive: Drive, eye: &Point3<f64>) -> Drive {
 
 // ---- What moves --------------------------------------------------------------------------------
 
+const SEEN_CAR: PointLabel = PointLabel::Class(CAR);
 const CAR_HALF_M: [f64; 3] = [2.1, 0.95, 0.5];
 /// Ten sweeps a second, half a second to both sides.
 const SWEEPS_S: [f64; 11] = [-0.5, -0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4, 0.5];
 /// Two annotations a second.
 const ANNOTATED_S: [f64; 3] = [-0.5, 0.0, 0.5];
 
-/// A car whose floor is 20 cm above the road.
+/// A car whose floor is 5 cm above the road: less than boxes grow, but not downwards.
 fn car_at(x_m: f64, y_m: f64, yaw_rad: f64) -> Body {
-    let place = upright([x_m, y_m, 0.2 + CAR_HALF_M[2]], yaw_rad);
+    let place = upright([x_m, y_m, 0.05 + CAR_HALF_M[2]], yaw_rad);
     Body::new(CAR, place, CAR_HALF_M.into()).tracked(1)
 }
 
@@ -302,6 +303,11 @@ fn moving_car_is_sharp(stage: &Stage) -> OccupancyLabels {
     let labels = drive.label(&rules);
     let occupied = stage.check_no_trail(&labels, &rules, 0.0);
     let passed = stage.free_on_the_way(&labels, &rules, 0.0);
+    let boxed: usize =
+        drive.aggregate(&rules, |_| true).objects.iter().map(|o| o.cloud.len()).sum();
+    let of_car =
+        drive.clouds.iter().flat_map(|cloud| &cloud.labels).filter(|label| **label == SEEN_CAR);
+    assert_eq!(boxed, of_car.count(), "the box holds the car's points and none of the road's");
     let shape = voxels_of_car(stage, &rules);
     assert_eq!(
         instances_above_ground(&labels, 1),
@@ -331,7 +337,7 @@ fn voxels_of_car(stage: &Stage, rules: &Rules) -> BTreeSet<[usize; 3]> {
             car(0.0).map_from_body * car(time).map_from_body.inverse() * map_from_lidar;
         let cloud = look(&(stage.world)(time), &map_from_lidar, &directions(stage.step_deg));
         let seen = cloud.positions.iter().zip(&cloud.labels);
-        for (p, _) in seen.filter(|(_, label)| **label == occlabel_core::PointLabel::Class(CAR)) {
+        for (p, _) in seen.filter(|(_, label)| **label == SEEN_CAR) {
             let flat = rules.spec.flat_of(&(now_from_lidar * p));
             voxels.extend(flat.map(|flat| rules.spec.voxel_at(flat).0.map(|i| i as usize)));
         }
@@ -484,7 +490,7 @@ fn owners_of_voxels(
     stage: &Stage,
     boxes: &[Body],
     rules: &Rules,
-) -> std::collections::BTreeMap<[usize; 3], BTreeSet<u16>> {
+) -> BTreeMap<[usize; 3], BTreeSet<u16>> {
     let margin = Vector3::new(0.1, 0.1, 0.05);
     let grown = |body: &Body| {
         // 10 cm on every face but the bottom's: the middle rises by half as much as the height grows.
@@ -501,7 +507,7 @@ fn owners_of_voxels(
         inside.min_by(|a, b| volume(a).total_cmp(&volume(b)).then(a.track.cmp(&b.track)))
     };
     let map_from_lidar = stage.map_from_lidar(0.0);
-    let mut owners = std::collections::BTreeMap::new();
+    let mut owners = BTreeMap::new();
     for p in &look(&(stage.world)(0.0), &map_from_lidar, &directions(stage.step_deg)).positions {
         let p = map_from_lidar * p;
         if let Some(flat) = rules.spec.flat_of(&p) {

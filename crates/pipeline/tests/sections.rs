@@ -108,6 +108,8 @@ fn section_5_the_class_of_a_neighbour_comes_from_any_sweep_and_never_from_a_trac
     let labels = drive.label(&rules);
     assert_eq!(class_of(&labels, &rules, HERE), Some(VEGETATION), "relabelling knows no window");
     assert_eq!(class_of(&labels, &rules, near_box), Some(OTHERS), "a car's point is no candidate");
+    let hits: u32 = labels.evidence.hits.values().iter().map(|&hits| u32::from(hits)).sum();
+    assert_eq!(hits, 2, "the window keeps the sweep that told it out of the grid");
 }
 
 #[test]
@@ -186,6 +188,39 @@ fn section_6_a_track_without_a_box_then_is_left_out_of_classes_and_hits() {
     assert!(labels.evidence.hits.values().iter().all(|&hits| hits == 0), "extrapolated only");
     let crossed = labels.evidence.crossings.values().iter().filter(|&&n| n > 0).count();
     assert_eq!(crossed, 9, "its world part stays: 8 faces along x and one along y");
+}
+
+// ---- Section 8: rays ---------------------------------------------------------------------------
+
+#[test]
+fn section_8_the_ray_of_a_tracks_point_stays_where_it_was_seen_up_to_the_box() {
+    // Seen 0.3 s after the keyframe, 6 m ahead; at the keyframe the car is 3 m farther left. Coming
+    // or going, it fills the same place.
+    for yaw_rad in [0.0, std::f64::consts::PI] {
+        let boxes = [(0.0, 3.2), (0.3, 0.2)].map(|(t, y)| (at(t), box_at([6.2, y, 1.0], yaw_rad)));
+        let mut drive =
+            drive_of(&[(0.0, seen(&[])), (0.3, seen(&[([5.9, 0.2, 1.0], UNLABELLED)]))]);
+        drive.scene.tracks = vec![track(1, CAR, boxes.to_vec())];
+        // The grown box begins at 5.1 m, in voxel 14; the point is in voxel 15.
+        let world_part = (4..14).map(|x| [x, 8, 3]);
+        let own: Vec<_> = world_part.chain([[14, 14, 3]]).collect();
+        assert_eq!(hit_and_crossed(&drive, "own"), [vec![[15, 14, 3]], own], "{yaw_rad}");
+        assert_eq!(hit_and_crossed(&drive, "hits"), [vec![[15, 14, 3]], vec![]], "{yaw_rad}");
+    }
+}
+
+/// The voxels that were hit, and those that were crossed, each once.
+fn hit_and_crossed(drive: &Drive, object_rays: &str) -> [Vec<[usize; 3]>; 2] {
+    let rules = small(&[&format!("raycast.object_rays={object_rays}")]);
+    let evidence = drive.label(&rules).evidence;
+    [&evidence.hits, &evidence.crossings].map(|counts| {
+        let once = rules.spec.voxels().zip(counts.values()).filter(|(_, count)| **count > 0);
+        once.map(|(voxel, count)| {
+            assert_eq!(*count, 1, "{voxel:?}");
+            voxel.0.map(|i| i as usize)
+        })
+        .collect()
+    })
 }
 
 // ---- Section 11: what is written ---------------------------------------------------------------

@@ -2,9 +2,10 @@
 
 use occlabel_core::Fault;
 
+use crate::console::Console;
 use crate::exit::Outcome;
 
-/// Everything odd about the input, with its scene.
+/// Everything odd about the input, with its scene. Told when it is found, kept for the report.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
     /// Odd, but nothing is lost.
@@ -14,11 +15,15 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    pub(crate) fn warn(&mut self, scene: &str, fault: Fault) {
+    /// Something odd.
+    pub(crate) fn warn(&mut self, console: &Console, scene: &str, fault: Fault) {
+        console.warning(scene, &fault);
         self.warnings.push((scene.to_owned(), fault));
     }
 
-    pub(crate) fn lose(&mut self, scene: &str, fault: Fault) {
+    /// Something skipped or degraded.
+    pub(crate) fn lose(&mut self, console: &Console, scene: &str, fault: Fault) {
+        console.warning(scene, &fault);
         self.losses.push((scene.to_owned(), fault));
     }
 

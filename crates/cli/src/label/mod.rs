@@ -3,9 +3,11 @@
 mod clock;
 mod findings;
 mod plan;
+mod planned_scene;
 mod records;
 mod report;
-mod scene;
+mod scene_run;
+mod sweep_reader;
 mod tally;
 mod workers;
 
@@ -20,7 +22,7 @@ use crate::interrupt::Interrupt;
 use crate::label::findings::Findings;
 use crate::label::plan::Plan;
 use crate::label::report::Report;
-use crate::label::scene::SceneRun;
+use crate::label::scene_run::SceneRun;
 use crate::progress::Progress;
 
 /// What every part of the run needs.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use occlabel_core::Fault;
 use occlabel_labels::{
-    GridRecord, InputRecord, JournalEntry, Manifest, Program, RunRecord, SceneRecord,
+    ClassRecord, GridRecord, InputRecord, JournalEntry, Manifest, Program, RunRecord, SceneRecord,
     TaxonomyRecord, inputs_hash,
 };
 use occlabel_logs::SceneSource;
@@ -12,7 +12,8 @@ use occlabel_pipeline::{Config, GridFrame};
 use serde_json::Value;
 
 use crate::label::Job;
-use crate::label::plan::{Plan, class_records};
+use crate::label::plan::Plan;
+use crate::label::planned_scene::PlannedScene;
 
 /// What makes this run what it is.
 pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
@@ -65,10 +66,15 @@ fn scene_records(plan: &Plan, entries: &[JournalEntry]) -> BTreeMap<String, Scen
     let is_finished = |scene: &str, token: &str| {
         entries.iter().any(|entry| entry.scene == scene && entry.keyframe == token)
     };
-    let record = |planned: &crate::label::plan::PlannedScene| {
+    let record = |planned: &PlannedScene| {
         let mut record = planned.record.clone();
         record.keyframes.retain(|token| is_finished(&planned.name, token));
         (planned.name.clone(), record)
     };
     plan.scenes.iter().map(record).collect()
+}
+
+fn class_records(names: &[String]) -> Vec<ClassRecord> {
+    let record = |(id, name): (usize, &String)| ClassRecord { id: id as u8, name: name.clone() };
+    names.iter().enumerate().map(record).collect()
 }

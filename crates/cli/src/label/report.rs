@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use occlabel_core::Fault;
 use serde_json::{Value, json};
 
 use crate::console::fault_json;
 use crate::exit::Outcome;
 use crate::label::findings::Findings;
-use crate::label::scene::SceneDone;
+use crate::label::scene_run::SceneDone;
 use crate::label::tally::Tally;
 
 /// Grows scene by scene.
@@ -29,7 +30,8 @@ impl Report {
     }
 
     pub(crate) fn total_line(&self) -> String {
-        self.total.line(&format!("{} scenes", self.scenes.len()))
+        let scenes = self.scenes.len();
+        self.total.line(&format!("{scenes} {}", if scenes == 1 { "scene" } else { "scenes" }))
     }
 
     pub(crate) fn json(&self, outcome: Outcome, findings: &Findings, threads: usize) -> Value {
@@ -52,8 +54,8 @@ impl Report {
     }
 }
 
-fn faults_json(faults: &[(String, occlabel_core::Fault)]) -> Vec<Value> {
-    let with_scene = |(scene, fault): &(String, occlabel_core::Fault)| {
+fn faults_json(faults: &[(String, Fault)]) -> Vec<Value> {
+    let with_scene = |(scene, fault): &(String, Fault)| {
         let mut value = fault_json(fault);
         value["scene"] = json!(scene);
         value

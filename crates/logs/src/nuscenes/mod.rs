@@ -10,7 +10,6 @@ mod copies;
 mod files;
 mod keyframes;
 mod label_files;
-mod missing;
 mod names;
 mod notes;
 mod npz;
@@ -40,7 +39,6 @@ use occlabel_core::{
 
 use crate::{ReaderDefaults, SceneSource, SweepPoints};
 
-pub use missing::MissingFile;
 pub use points::PointColumns;
 pub use pose::QuaternionOrder;
 
@@ -103,11 +101,6 @@ impl NuScenesLog {
     /// If the version folder or its table of sensors cannot be read, or no lidar is in it.
     pub fn format_defaults(root: &Path, version: Option<&str>) -> Result<ReaderDefaults, Fault> {
         defaults(&version::version_folder(root, version)?)
-    }
-
-    /// The scene's files of points and labels that are not there, all at once.
-    pub fn missing_files(&self, scene: &Scene) -> Vec<MissingFile> {
-        missing::missing_files(self, scene)
     }
 
     /// The file that labels a sweep's points, unless the sweep is to go without.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use occlabel_core::{KeyframeSettings, KeyframeSource};
-use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, SceneSource};
+use occlabel_logs::{Inventory, NuScenesLog, NuScenesOptions, QuaternionOrder, SceneSource};
 
 use crate::tiny_log::{CAR, taxonomy};
 
@@ -46,5 +46,5 @@ fn a_recorded_drive_is_read_as_its_makers_counted_it() {
     assert_eq!(camera.name, "CAM_FRONT");
     assert_eq!((camera.camera.width, camera.camera.height), (1242, 375));
     assert!(scene.keyframes.iter().all(|keyframe| keyframe.exposures.len() == 1));
-    assert!(scene.refused.is_empty() && log.missing_files(&scene).is_empty());
+    assert!(scene.refused.is_empty() && Inventory::take(&log, &root, &scene).missing.is_empty());
 }

@@ -6,7 +6,7 @@ use nalgebra::Point3;
 use ndarray::Array1;
 use ndarray_npy::NpzWriter;
 use occlabel_core::{PointLabel, Scene};
-use occlabel_logs::{PointColumns, SceneSource, SweepPoints};
+use occlabel_logs::{Inventory, PointColumns, SceneSource, SweepPoints};
 use serde_json::json;
 
 use crate::tiny_log::{CAR, ROAD, TinyLog, points, sweep_file};
@@ -99,14 +99,13 @@ fn fault_04_absent_files_are_listed_at_once_with_what_they_would_weigh() {
     log.files.remove("lidarseg/l0.bin");
     let open = log.open().unwrap();
     let scene = open.log.load("scene-0001").unwrap();
-    let missing = open.log.missing_files(&scene);
-    let told: Vec<_> = missing
-        .iter()
-        .map(|file| (file.file.as_str(), file.sweep, file.is_reference, file.holds_labels))
-        .collect();
+    let inventory = Inventory::take(&open.log, open.root.path(), &scene);
+    let missing = &inventory.missing;
+    let told: Vec<_> =
+        missing.iter().map(|file| (file.file.as_str(), file.sweep, file.is_reference)).collect();
     let l1 = sweep_file("l1");
-    assert_eq!(told, [("lidarseg/l0.bin", 0, true, true), (l1.as_str(), 1, false, false)]);
-    assert_eq!(missing[1].estimated_bytes, 40);
+    assert_eq!(told, [("lidarseg/l0.bin", 0, true), (l1.as_str(), 1, false)]);
+    assert_eq!(inventory.missing_bytes(), 2 * 40);
     let fault = open.log.read_sweep(&scene.sweeps[1]).unwrap_err();
     assert_eq!(fault.rule, "missing-file");
 }
@@ -117,7 +116,8 @@ fn fault_05_an_absent_reference_sweep_is_told_as_such() {
     log.files.remove(&sweep_file("l2"));
     let open = log.open().unwrap();
     let scene = open.log.load("scene-0001").unwrap();
-    let missing = open.log.missing_files(&scene);
+    let inventory = Inventory::take(&open.log, open.root.path(), &scene);
+    let missing = &inventory.missing;
     assert!(missing.len() == 1 && missing[0].is_reference && missing[0].sweep == 2);
     assert_eq!(scene.keyframes[1].sweep, 2);
 }

@@ -1,0 +1,157 @@
+//! A scene that will be labelled, and why one will not.
+
+use std::collections::BTreeSet;
+
+use occlabel_core::{BoxTrack, Fault, Keyframe, Scene};
+use occlabel_labels::{SceneRecord, TrackRecord};
+use occlabel_logs::{Inventory, MissingFile, SceneSource};
+use occlabel_pipeline::MemoryModel;
+
+use crate::label::Job;
+use crate::label::findings::Findings;
+
+/// The fewest bytes of a point in a sweep's file, to tell points from sizes.
+const BYTES_A_POINT: u64 = 16;
+
+/// A scene that will be labelled.
+pub(crate) struct PlannedScene {
+    pub(crate) name: String,
+    /// What the manifest says of it, all wanted keyframes included.
+    pub(crate) record: SceneRecord,
+    /// Files of its sweeps, relative to the log's root, with their sizes.
+    pub(crate) files: Vec<(String, u64)>,
+    /// How many keyframes at once, and in how many shards of rays each.
+    pub(crate) at_once: (usize, usize),
+    sweeps: usize,
+}
+
+/// Why a scene cannot be labelled.
+pub(crate) enum Refused {
+    /// It has no point labels, and no class for such points: a matter of configuration.
+    NoLabels(Fault),
+    /// The log or the machine would not have it.
+    Broken(Vec<Fault>),
+}
+
+impl PlannedScene {
+    /// Looks at a scene, and takes its keyframes from the wanted `tokens`; none if it has none of
+    /// them.
+    pub(crate) fn plan(
+        job: &Job,
+        name: &str,
+        tokens: &mut BTreeSet<&str>,
+        findings: &mut Findings,
+    ) -> Result<Option<Self>, Refused> {
+        let scene = job.opened.source.load(name).map_err(|fault| Refused::Broken(vec![fault]))?;
+        let keyframes = chosen_keyframes(job, &scene, tokens);
+        if keyframes.is_empty() && !job.args.keyframes.is_empty() {
+            return Ok(None);
+        }
+        job.opened.rules.check_labels(&scene).map_err(Refused::NoLabels)?;
+        for fault in &scene.warnings {
+            findings.warn(job.console, name, fault.clone());
+        }
+        lose_refused(job, &scene, findings)?;
+        let inventory = Inventory::take(&job.opened.source, &job.args.log.input, &scene);
+        lose_missing(job, &scene, &inventory, findings)?;
+        Ok(Some(Self {
+            name: name.to_owned(),
+            record: scene_record(job, &scene, keyframes),
+            at_once: fit(job, &scene, inventory.present_bytes())?,
+            files: inventory.present,
+            sweeps: scene.sweeps.len(),
+        }))
+    }
+
+    /// One line for `--dry-run`.
+    pub(crate) fn line(&self) -> String {
+        let bytes: u64 = self.files.iter().map(|(_, bytes)| bytes).sum();
+        let (keyframes, points) = (self.record.keyframes.len(), bytes / BYTES_A_POINT);
+        let rays = points * keyframes as u64;
+        format!(
+            "{}: {keyframes} keyframes, {} sweeps, at most {points} points and {rays} rays, {bytes} bytes",
+            self.name, self.sweeps,
+        )
+    }
+}
+
+fn chosen_keyframes(job: &Job, scene: &Scene, tokens: &mut BTreeSet<&str>) -> Vec<String> {
+    let all = job.args.keyframes.is_empty();
+    let is_chosen = |keyframe: &&Keyframe| tokens.remove(keyframe.token.as_str()) || all;
+    scene.keyframes.iter().filter(is_chosen).map(|keyframe| keyframe.token.clone()).collect()
+}
+
+/// Records that the reader refused.
+fn lose_refused(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<(), Refused> {
+    let faults: Vec<Fault> = scene.refused.iter().map(|refusal| refusal.fault.clone()).collect();
+    lose(job, scene, faults, job.skips(), findings)
+}
+
+/// Files that are not there, all told at once.
+fn lose_missing(
+    job: &Job,
+    scene: &Scene,
+    inventory: &Inventory,
+    findings: &mut Findings,
+) -> Result<(), Refused> {
+    let may_miss = |file: &MissingFile| job.args.allow_missing_sweeps && !file.is_reference;
+    let is_allowed = job.skips() || inventory.missing.iter().all(may_miss);
+    let about = (!inventory.missing.is_empty()).then(|| about_missing(scene, inventory));
+    let faults = about.into_iter().chain(inventory.missing.iter().map(missing_fault)).collect();
+    lose(job, scene, faults, is_allowed, findings)
+}
+
+fn lose(
+    job: &Job,
+    scene: &Scene,
+    faults: Vec<Fault>,
+    is_allowed: bool,
+    findings: &mut Findings,
+) -> Result<(), Refused> {
+    if !is_allowed && !faults.is_empty() {
+        return Err(Refused::Broken(faults));
+    }
+    faults.into_iter().for_each(|fault| findings.lose(job.console, &scene.name, fault));
+    Ok(())
+}
+
+fn missing_fault(missing: &MissingFile) -> Fault {
+    let fault = Fault::new("missing-file", &missing.file, "a file", "none");
+    if missing.is_reference { fault.record("reference sweep of a keyframe") } else { fault }
+}
+
+/// One line about all that is missing: how many files, and about how many bytes.
+fn about_missing(scene: &Scene, inventory: &Inventory) -> Fault {
+    let missing = inventory.missing.len();
+    let expected = format!("{} files of sweeps", missing + inventory.present.len());
+    let found = format!("{missing} missing, about {} bytes", inventory.missing_bytes());
+    Fault::new("missing-files", &scene.name, expected, found).hint(
+        "--allow-missing-sweeps labels without them, --on-error skip without their keyframes too",
+    )
+}
+
+/// How many keyframes fit into memory at once.
+fn fit(job: &Job, scene: &Scene, bytes: u64) -> Result<(usize, usize), Refused> {
+    let model = MemoryModel::new(bytes / BYTES_A_POINT, &job.opened.rules.spec);
+    model.plan(job.threads, job.args.memory).map_err(|needed| {
+        let limit = job.args.memory.unwrap_or(u64::MAX);
+        let expected = format!("a scene that fits into {limit} bytes");
+        let fault = Fault::new("memory", &scene.name, expected, format!("{needed} bytes needed"));
+        Refused::Broken(vec![fault.hint("raise --memory, or take a coarser or smaller grid")])
+    })
+}
+
+fn scene_record(job: &Job, scene: &Scene, keyframes: Vec<String>) -> SceneRecord {
+    let names = &job.opened.rules.taxonomy.names;
+    let track = |track: &BoxTrack| TrackRecord {
+        index: track.id.0,
+        id: track.source_id.clone(),
+        class: track.class().map(|class| names[class.index()].clone()),
+        category: track.category.clone(),
+    };
+    SceneRecord {
+        cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
+        tracks: scene.tracks.iter().map(track).collect(),
+        keyframes,
+    }
+}

@@ -1,0 +1,183 @@
+//! One scene of a run: aggregate, label keyframe by keyframe, write.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
+
+use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene};
+use occlabel_labels::{
+    FileRecord, Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz,
+};
+use occlabel_logs::SceneSource;
+use occlabel_pipeline::{aggregate_scene, label_keyframe};
+
+use crate::exit::Stop;
+use crate::interrupt::Interrupt;
+use crate::label::clock::StageClock;
+use crate::label::findings::Findings;
+use crate::label::planned_scene::PlannedScene;
+use crate::label::sweep_reader::SweepReader;
+use crate::label::tally::{Tally, VoxelCounts};
+use crate::label::{Job, workers};
+use crate::progress::Progress;
+
+/// A scene to label.
+pub(crate) struct SceneRun<'a> {
+    pub(crate) job: &'a Job<'a>,
+    pub(crate) planned: &'a PlannedScene,
+    pub(crate) progress: &'a Progress,
+    pub(crate) interrupt: &'a Interrupt,
+}
+
+/// What came of it.
+#[derive(Default)]
+pub(crate) struct SceneDone {
+    pub(crate) tally: Tally,
+    /// The finished keyframes, by this run or an earlier one.
+    pub(crate) entries: Vec<JournalEntry>,
+}
+
+/// What the keyframes of a scene share while they are worked on.
+struct Bench<'a> {
+    scene: &'a Scene,
+    aggregated: &'a AggregatedScene<ClassId>,
+    journal: Mutex<&'a mut Journal>,
+    done: Mutex<SceneDone>,
+}
+
+impl SceneRun<'_> {
+    /// Labels what no earlier run finished.
+    pub(crate) fn label(
+        &self,
+        finished: &BTreeMap<(String, String), JournalEntry>,
+        journal: &mut Journal,
+        findings: &mut Findings,
+    ) -> Result<SceneDone, Stop> {
+        let mut done = self.finished_before(finished);
+        let _lock = WriterLock::of_scene(&self.job.tree, &self.planned.name)?;
+        let scene = self.job.opened.source.load(&self.planned.name)?;
+        let mut todo = self.keyframes_to_label(&scene, &done);
+        if todo.is_empty() {
+            return Ok(done);
+        }
+        self.progress.scene(&scene.name);
+        let reader = SweepReader::new(self.job);
+        let aggregated = self.aggregate(&scene, &reader, &mut done.tally)?;
+        let book = reader.close();
+        book.tell(self.job, &scene.name, self.progress, findings);
+        todo.retain(|keyframe| match book.refusal_of(&scene, keyframe) {
+            Some(fault) => {
+                findings.lose(self.job.console, &scene.name, fault);
+                false
+            }
+            None => true,
+        });
+        let (journal, done) = (Mutex::new(journal), Mutex::new(done));
+        let bench = Bench { scene: &scene, aggregated: &aggregated, journal, done };
+        let is_over = || self.interrupt.is_raised();
+        let (at_once, _) = self.planned.at_once;
+        workers::for_each(&todo, at_once, is_over, |keyframe| self.finish(keyframe, &bench))?;
+        Ok(bench.done.into_inner().expect("no worker panicked"))
+    }
+
+    /// The wanted keyframes of which an earlier run wrote all that this one would.
+    fn finished_before(&self, finished: &BTreeMap<(String, String), JournalEntry>) -> SceneDone {
+        let mut done = SceneDone::default();
+        for token in &self.planned.record.keyframes {
+            let entry = finished.get(&(self.planned.name.clone(), token.clone()));
+            if let Some(entry) = entry.filter(|entry| self.has_all_files(entry)) {
+                done.keep(entry);
+            }
+        }
+        done
+    }
+
+    fn has_all_files(&self, entry: &JournalEntry) -> bool {
+        let evidence = TreePath::evidence(&entry.scene, &entry.keyframe);
+        !self.job.args.evidence || evidence.is_ok_and(|path| entry.has(&path))
+    }
+
+    fn keyframes_to_label<'s>(&self, scene: &'s Scene, done: &SceneDone) -> Vec<&'s Keyframe> {
+        let wanted: BTreeSet<&String> = self.planned.record.keyframes.iter().collect();
+        let finished: BTreeSet<&String> =
+            done.entries.iter().map(|entry| &entry.keyframe).collect();
+        let is_due = |token| wanted.contains(token) && !finished.contains(token);
+        scene.keyframes.iter().filter(|keyframe| is_due(&keyframe.token)).collect()
+    }
+
+    fn aggregate(
+        &self,
+        scene: &Scene,
+        reader: &SweepReader,
+        tally: &mut Tally,
+    ) -> Result<AggregatedScene<ClassId>, Fault> {
+        let mut clock = StageClock::start();
+        let (rules, read) = (&self.job.opened.rules, |sweep: &_| reader.read(sweep));
+        let aggregated = aggregate_scene(scene, rules, read, |stage| clock.enter(stage))?;
+        tally.times.add(&clock.stop());
+        tally.points = aggregated.point_count() as u64;
+        tally.dropped = aggregated.dropped;
+        tally.boxes_without_points = boxes_without_points(scene, &aggregated);
+        Ok(aggregated)
+    }
+
+    /// Labels a keyframe, writes it, and notes that it is finished.
+    fn finish(&self, keyframe: &Keyframe, bench: &Bench) -> Result<(), Fault> {
+        let (mut clock, (_, shards)) = (StageClock::start(), self.planned.at_once);
+        let rules = &self.job.opened.rules;
+        let labels =
+            label_keyframe(bench.scene, bench.aggregated, keyframe, rules, shards, |stage| {
+                clock.enter(stage);
+            });
+        let entry = JournalEntry {
+            scene: bench.scene.name.clone(),
+            keyframe: keyframe.token.clone(),
+            files: self.write(keyframe, &labels)?,
+            summary: serde_json::to_value(VoxelCounts::of(&labels)).expect("counts are JSON"),
+        };
+        bench.journal.lock().expect("no worker panicked").append(&entry)?;
+        let rays = bench.aggregated.point_count() as u64;
+        let mut done = bench.done.lock().expect("no worker panicked");
+        done.keep(&entry);
+        done.tally.rays += rays;
+        done.tally.times.add(&clock.stop());
+        self.progress.keyframe(&entry.scene, &entry.keyframe, rays);
+        Ok(())
+    }
+
+    fn write(
+        &self,
+        keyframe: &Keyframe,
+        labels: &OccupancyLabels,
+    ) -> Result<Vec<FileRecord>, Fault> {
+        let (tree, scene, token) = (&self.job.tree, &self.planned.name, &keyframe.token);
+        let mut files = Vec::new();
+        if self.job.args.evidence {
+            let bytes = evidence_npz(&labels.evidence);
+            files.push(tree.write(&TreePath::evidence(scene, token)?, &bytes)?);
+        }
+        files.push(tree.write(&TreePath::labels(scene, token)?, &labels_npz(labels))?);
+        Ok(files)
+    }
+}
+
+impl SceneDone {
+    /// Counts a finished keyframe.
+    fn keep(&mut self, entry: &JournalEntry) {
+        self.tally.keyframes += 1;
+        let counts: VoxelCounts = serde_json::from_value(entry.summary.clone()).unwrap_or_default();
+        self.tally.voxels.add(&counts);
+        self.entries.push(entry.clone());
+    }
+}
+
+/// Annotated boxes at the time of a sweep that hold no point of it.
+fn boxes_without_points(scene: &Scene, aggregated: &AggregatedScene<ClassId>) -> usize {
+    let sweeps: BTreeSet<_> = scene.sweeps.iter().map(|sweep| sweep.time).collect();
+    let held: BTreeSet<_> =
+        aggregated.objects.iter().map(|object| (object.track, object.time)).collect();
+    let annotated = scene.tracks.iter().flat_map(|track| {
+        let times = track.boxes.iter().map(|(time, _)| *time);
+        times.filter(|time| sweeps.contains(time)).map(|time| (track.id, time))
+    });
+    annotated.filter(|annotation| !held.contains(annotation)).count()
+}

@@ -1,0 +1,88 @@
+//! Reading a scene's sweeps, and keeping book of what was odd about them.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use occlabel_core::{Fault, Keyframe, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_logs::SceneSource;
+
+use crate::label::Job;
+use crate::label::findings::Findings;
+use crate::progress::Progress;
+
+/// Reads sweeps, from any thread.
+pub(crate) struct SweepReader<'a> {
+    job: &'a Job<'a>,
+    book: Mutex<Book>,
+}
+
+/// What reading brought to light.
+#[derive(Default)]
+pub(crate) struct Book {
+    warnings: Vec<Fault>,
+    /// Sweeps that were left out, by their file.
+    lost: BTreeMap<String, Fault>,
+}
+
+impl<'a> SweepReader<'a> {
+    pub(crate) fn new(job: &'a Job<'a>) -> Self {
+        Self { job, book: Mutex::default() }
+    }
+
+    /// The points of a sweep; none if it is left out.
+    pub(crate) fn read(
+        &self,
+        sweep: &SweepHeader,
+    ) -> Result<Option<PointCloud<PointLabel>>, Fault> {
+        let read = self.job.opened.source.read_sweep(sweep);
+        let mut book = self.book.lock().expect("no reader panicked");
+        match read {
+            Ok(points) => {
+                book.warnings.extend(points.warnings);
+                Ok(Some(points.cloud))
+            }
+            Err(fault) if self.may_lose(&fault) => {
+                book.lost.insert(sweep.file.clone(), fault);
+                Ok(None)
+            }
+            Err(fault) => Err(fault),
+        }
+    }
+
+    fn may_lose(&self, fault: &Fault) -> bool {
+        let is_missing = fault.rule == "missing-file";
+        self.job.skips() || (is_missing && self.job.args.allow_missing_sweeps)
+    }
+
+    /// The book, in an order that does not depend on threads.
+    pub(crate) fn close(self) -> Book {
+        let mut book = self.book.into_inner().expect("no reader panicked");
+        book.warnings.sort_by(|a, b| (&a.place, a.rule).cmp(&(&b.place, b.rule)));
+        book
+    }
+}
+
+impl Book {
+    /// Tells of everything. Absent files were told of before any sweep was read.
+    pub(crate) fn tell(
+        &self,
+        job: &Job,
+        scene: &str,
+        progress: &Progress,
+        findings: &mut Findings,
+    ) {
+        let lost = self.lost.values().filter(|fault| fault.rule != "missing-file");
+        progress.suspend(|| {
+            self.warnings.iter().for_each(|fault| findings.warn(job.console, scene, fault.clone()));
+            lost.for_each(|fault| findings.lose(job.console, scene, fault.clone()));
+        });
+    }
+
+    /// What a keyframe lost with its reference sweep, if that was left out.
+    pub(crate) fn refusal_of(&self, scene: &Scene, keyframe: &Keyframe) -> Option<Fault> {
+        let cause = self.lost.get(&scene.reference_sweep(keyframe).file)?;
+        let expected = "the reference sweep of a keyframe";
+        let fault = Fault::new("keyframe", &cause.place, expected, &cause.found);
+        Some(fault.record(format!("keyframe {}, which is not labelled", keyframe.token)))
+    }
+}

@@ -1,0 +1,70 @@
+//! Which of a scene's files are there, found out without reading them.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use occlabel_core::Scene;
+
+use crate::SceneSource;
+
+/// The files of a scene's sweeps.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Inventory {
+    /// Those that are there, relative to the log's root, with their sizes.
+    pub present: Vec<(String, u64)>,
+    /// Those that are not, in order of sweeps.
+    pub missing: Vec<MissingFile>,
+}
+
+/// A file that is not there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingFile {
+    /// Its path below the log's root.
+    pub file: String,
+    /// The sweep that it belongs to, by its place in the scene.
+    pub sweep: usize,
+    /// Whether a keyframe refers to that sweep.
+    pub is_reference: bool,
+}
+
+impl Inventory {
+    /// Looks for every file of the scene's sweeps below the log's root.
+    pub fn take(source: &dyn SceneSource, root: &Path, scene: &Scene) -> Self {
+        let references: BTreeSet<usize> = scene.keyframes.iter().map(|frame| frame.sweep).collect();
+        let mut inventory = Self::default();
+        for (sweep, header) in scene.sweeps.iter().enumerate() {
+            for file in source.sweep_files(header) {
+                let is_reference = references.contains(&sweep);
+                match size(&root.join(&file)) {
+                    Some(bytes) => inventory.present.push((file, bytes)),
+                    None => inventory.missing.push(MissingFile { file, sweep, is_reference }),
+                }
+            }
+        }
+        inventory
+    }
+
+    /// Bytes of the files that are there.
+    pub fn present_bytes(&self) -> u64 {
+        self.present.iter().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// About how many bytes are missing: each file weighs as the median of the present ones.
+    pub fn missing_bytes(&self) -> u64 {
+        let mut sizes: Vec<u64> = self.present.iter().map(|(_, bytes)| *bytes).collect();
+        sizes.sort_unstable();
+        let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(0);
+        typical * self.missing.len() as u64
+    }
+}
+
+/// A file's size; `None` if it is absent. One that is there but cannot be looked at counts as empty:
+/// reading it will tell what is wrong.
+fn size(path: &Path) -> Option<u64> {
+    match fs::metadata(path) {
+        Ok(metadata) => Some(metadata.len()),
+        Err(error) => (error.kind() != ErrorKind::NotFound).then_some(0),
+    }
+}
