@@ -48,7 +48,8 @@ fn program() -> Command {
 impl Label {
     /// A line for a log and an output folder.
     pub(crate) fn new(log: &Path, output: &Path) -> Self {
-        let line = ["label", "--format", "nuscenes", "--input", text(log), "--output", text(output)];
+        let line =
+            ["label", "--format", "nuscenes", "--input", text(log), "--output", text(output)];
         Self { args: line.map(str::to_owned).to_vec(), output: output.to_owned() }
     }
 
