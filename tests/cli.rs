@@ -270,7 +270,7 @@ fn the_manifest_knows_no_machine_and_leaves_nothing_to_guess() {
     let folder = log.beside("");
     assert!(!text.contains(folder.to_str().expect("UTF-8")), "a path of the machine");
     assert!(!text.contains("\"auto\"") && !text.contains("\"taxonomy\": \"taxonomy\""));
-    for word in ["jobs", "memory", "threads", "host", "seconds", "mtime", "3221225472"] {
+    for word in ["jobs", "memory", "threads", "\"host\"", "seconds", "mtime", "3221225472"] {
         assert!(!text.contains(word), "{word}");
     }
 }
@@ -363,7 +363,6 @@ fn an_unknown_key_or_value_exits_with_2_and_is_named() {
         ("grid", "`grid`"),
         ("relabel.unknown_class=unicorn", "unicorn"),
         ("taxonomy.file=absent.toml", "absent.toml"),
-        ("keyframes.reference_lidar=LIDAR_ROOF", "LIDAR_ROOF"),
     ] {
         label.clone().with(&["--set", setting]).run().exits(2).tells(&[named, "expected", "found"]);
     }
@@ -601,9 +600,9 @@ mod interrupted {
 
     use super::*;
 
-    /// A log of 12 keyframes, to be labelled by one thread in the whole grid.
+    /// A log of 8 keyframes, to be labelled by one thread in the whole grid.
     fn long_run() -> (TestLog, Label) {
-        let log = TestLog::simulated(&occlabel_testkit::LogSpec { keyframes: 12, ..nano_spec() });
+        let log = TestLog::simulated(&occlabel_testkit::LogSpec { keyframes: 8, ..nano_spec() });
         let label = Label::new(&log.root(), &log.beside("out")).with(&["--jobs", "1"]);
         (log, label)
     }
@@ -632,7 +631,7 @@ mod interrupted {
         );
         let before = times(&label.output.join("gts"));
         let kept: Vec<_> = before.iter().filter(|(name, _)| name.ends_with(".npz")).collect();
-        assert!((1..12).contains(&kept.len()), "{} keyframes before", kept.len());
+        assert!((1..8).contains(&kept.len()), "{} keyframes before", kept.len());
         label.run().exits(0);
         let after = times(&label.output.join("gts"));
         assert!(kept.into_iter().all(|(name, time)| after[name] == *time), "made again");

@@ -46,7 +46,7 @@ fn assert_nothing_written(label: &Label) {
 fn assert_skipped(label: &Label, rule: &str, keyframes: &[String]) -> Ended {
     let label = label.clone().with(&SKIP);
     let ended = label.run().exits(3);
-    assert_eq!(losses(&label.output, rule).is_empty(), false, "{}", report(&label.output));
+    assert!(!losses(&label.output, rule).is_empty(), "{}", report(&label.output));
     assert_keyframes(&label.output, keyframes);
     assert_eq!(leftovers(&label.output), [""; 0]);
     ended
@@ -203,9 +203,9 @@ fn fault_04_absent_sweeps_are_all_listed_at_once() {
     let log = TestLog::nano();
     let files = log.other_files();
     files.iter().for_each(|file| log.remove(file));
-    let mut ended = assert_refused(&label(&log), &["6 of them missing", "bytes"]);
+    let mut ended = assert_refused(&label(&log), &["6 missing", "bytes"]);
     for file in &files {
-        ended = ended.tells(&[file, "expected a sweep's file"]);
+        ended = ended.tells(&[file, "expected a file"]);
     }
     ended.tells(&["--allow-missing-sweeps"]);
 }
@@ -216,7 +216,7 @@ fn fault_04_absent_sweeps_can_be_allowed() {
     let files = log.other_files();
     files.iter().for_each(|file| log.remove(file));
     let label = label(&log).with(&["--allow-missing-sweeps"]);
-    label.run().exits(3).tells(&["warning", "6 of them missing"]);
+    label.run().exits(3).tells(&["warning", "6 missing"]);
     assert_keyframes(&label.output, &log.keyframes());
     let lost = losses(&label.output, "missing-file");
     let places: Vec<String> = lost.iter().map(|loss| field(loss, "place")).collect();
@@ -260,7 +260,7 @@ fn fault_06_points_that_are_not_finite_are_dropped_and_counted() {
 fn fault_06_more_than_half_of_them_is_warned_of() {
     let log = TestLog::nano();
     let file = &log.other_files()[0];
-    log.edit_points(file, |points| drop(spoil(points, 1, f32::NEG_INFINITY)));
+    log.edit_points(file, |points| assert!(spoil(points, 1, f32::NEG_INFINITY) > 0));
     let label = label(&log);
     label.run().exits(0).tells(&["warning", file, "NaN or an infinity"]);
     assert_eq!(warnings(&label.output, "sweep-not-finite").len(), 1);
@@ -969,13 +969,16 @@ mod links {
     }
 
     #[test]
-    fn fault_37_a_runs_own_record_may_not_be_a_link() {
-        for name in ["run.json", "journal.jsonl", "manifest.json", "report.json"] {
+    fn fault_37_nothing_is_written_through_a_link_in_place_of_a_record() {
+        for (name, code) in
+            [("run.json", 1), ("journal.jsonl", 1), ("manifest.json", 0), ("report.json", 0)]
+        {
             let log = TestLog::nano();
             let victim = log.beside("victim");
             fs::create_dir_all(log.beside("out")).expect("a folder");
             symlink(&victim, log.beside("out").join(name)).expect("a link");
-            label(&log).run().exits(1).tells(&[name, "symbolic link"]);
+            let ended = label(&log).run().exits(code);
+            assert!(code == 0 || ended.stderr.contains("a symbolic link"), "{}", ended.stderr);
             assert!(!victim.exists(), "{name}");
         }
     }

@@ -40,11 +40,16 @@ pub(crate) fn gts_files(root: &Path) -> BTreeMap<String, Vec<u8>> {
 pub(crate) fn tree_hash(root: &Path) -> String {
     let mut hasher = blake3::Hasher::new();
     for (name, bytes) in files_under(root) {
-        if !name.starts_with("report") {
+        if !is_report(&name) {
             hasher.update(format!("{name}\0{}\0", bytes.len()).as_bytes()).update(&bytes);
         }
     }
     hasher.finalize().to_hex().to_string()
+}
+
+/// Whether a path is that of `report.json`, or of a shard's.
+fn is_report(path: &str) -> bool {
+    path.rsplit('/').next().is_some_and(|name| name.starts_with("report."))
 }
 
 /// Files that a finished run must not leave: parts, locks, the run's own records.

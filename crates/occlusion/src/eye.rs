@@ -3,8 +3,6 @@
 use nalgebra::Point3;
 use occlabel_core::{Camera, Pose};
 
-use crate::OcclusionSettings;
-
 /// A camera where it stood when it was exposed.
 #[derive(Clone, Debug)]
 pub struct Eye<'a> {
@@ -22,14 +20,18 @@ impl Eye<'_> {
         self.grid_from_camera.translation.vector.into()
     }
 
-    /// Whether a point of the grid frame is in view: near enough, before the lens, on the image, and
-    /// not behind the camera's own body.
+    /// Tells whether a point of the grid frame is in view: near enough, before the lens, on the
+    /// image, and not behind the camera's own body.
     ///
     /// The way to the point is taken before it is turned, so that distances stay exact.
-    pub(crate) fn has_in_view(&self, p: &Point3<f64>, settings: &OcclusionSettings) -> bool {
-        let way = p - self.position();
-        let in_camera = || Point3::from(self.grid_from_camera.rotation.inverse() * way);
-        way.norm() <= settings.depth_max_m && self.camera.pixel_of(&in_camera()).is_some()
+    pub(crate) fn view(&self, depth_max_m: f64) -> impl Fn(&Point3<f64>) -> bool {
+        let position = self.position();
+        let camera_from_grid = self.grid_from_camera.rotation.inverse().to_rotation_matrix();
+        move |p| {
+            let way = p - position;
+            let in_camera = || Point3::from(camera_from_grid * way);
+            way.norm() <= depth_max_m && self.camera.pixel_of(&in_camera()).is_some()
+        }
     }
 
     /// The far ends of rays through every `stride`-th pixel of each row and column, grid frame.

@@ -108,9 +108,10 @@ fn seen_by(
             look.along(spec.snap(&end));
         }
     }
+    let is_in_view = eye.view(settings.depth_max_m);
     for flat in 0..spec.len() {
         let (is_target, is_plain) = (look.is_target(flat, settings.rays), look.is_plain(flat));
-        if (is_target || is_plain) && eye.has_in_view(&spec.centre(spec.voxel_at(flat)), settings) {
+        if (is_target || is_plain) && is_in_view(&spec.centre(spec.voxel_at(flat))) {
             look.at(flat, is_target);
         }
     }

@@ -7,7 +7,7 @@ use occlabel_raycast::{RaySettings, StateSettings};
 use occlabel_voxelize::VoteSettings;
 use serde::{Deserialize, Serialize};
 
-use crate::check;
+use crate::{check, layers};
 
 /// All that decides a label.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -186,17 +186,17 @@ impl Config {
         file: Option<&str>,
         settings: &[String],
     ) -> Result<Self, Fault> {
-        let mut table = parse_table(base, place)?;
-        if let Some(text) = file {
-            overlay(&mut table, parse_table(text, place)?);
-        }
-        for setting in settings {
-            overlay(&mut table, parse_setting(setting)?);
-        }
-        let config: Self = table.try_into().map_err(|error: toml::de::Error| {
-            let found = error.message().trim().to_owned();
-            Fault::new("config", place, "the keys that `occlabel presets precise` prints", found)
-        })?;
+        let config: Self = layers::merge(place, base, file, settings)?.try_into().map_err(
+            |error: toml::de::Error| {
+                let found = error.message().trim().to_owned();
+                Fault::new(
+                    "config",
+                    place,
+                    "the keys that `occlabel presets precise` prints",
+                    found,
+                )
+            },
+        )?;
         check::check(&config)?;
         Ok(config)
     }
@@ -253,61 +253,6 @@ impl Limit {
             Self::AtMost(limit) => Some(limit),
             Self::Lifted(NoLimit::None) => None,
         }
-    }
-}
-
-fn parse_table(text: &str, place: &str) -> Result<toml::Table, Fault> {
-    text.parse().map_err(|error: toml::de::Error| {
-        let fault = Fault::new("config", place, "TOML", error.message());
-        match error.span() {
-            Some(span) => fault.offset(span.start as u64),
-            None => fault,
-        }
-    })
-}
-
-/// Lays `upper` over `lower`, table by table.
-fn overlay(lower: &mut toml::Table, upper: toml::Table) {
-    for (key, value) in upper {
-        match (lower.get_mut(&key), value) {
-            (Some(toml::Value::Table(under)), toml::Value::Table(over)) if !is_corners(&over) => {
-                overlay(under, over);
-            }
-            (_, value) => {
-                lower.insert(key, value);
-            }
-        }
-    }
-}
-
-/// A pair of corners is a value: it replaces another pair as a whole.
-fn is_corners(table: &toml::Table) -> bool {
-    table.contains_key("min") && table.contains_key("max")
-}
-
-/// `table.key=VALUE` as nested tables. VALUE is TOML, or else a string.
-fn parse_setting(setting: &str) -> Result<toml::Table, Fault> {
-    let usage = || Fault::new("config", "--set", "table.key=VALUE", format!("`{setting}`"));
-    let (path, text) = setting.split_once('=').ok_or_else(usage)?;
-    let path: Vec<&str> = path.split('.').map(str::trim).collect();
-    if path.len() < 2 || path.iter().any(|key| key.is_empty()) {
-        return Err(usage());
-    }
-    let mut value = parse_value(text);
-    for key in path.into_iter().rev() {
-        value = toml::Value::Table(toml::Table::from_iter([(key.to_owned(), value)]));
-    }
-    match value {
-        toml::Value::Table(table) => Ok(table),
-        _ => Err(usage()),
-    }
-}
-
-fn parse_value(text: &str) -> toml::Value {
-    let parsed = format!("value = {text}").parse::<toml::Table>();
-    match parsed {
-        Ok(mut table) if table.len() == 1 => table.remove("value").expect("the one key"),
-        _ => toml::Value::String(text.to_owned()),
     }
 }
 

@@ -26,6 +26,7 @@ mod check;
 mod config;
 mod flow;
 mod label_keyframe;
+mod layers;
 mod memory;
 mod presets;
 mod rules;
