@@ -15,6 +15,7 @@ const PLAIN_EVERY: Duration = Duration::from_secs(10);
 /// Shows how far a run has come.
 pub(crate) struct Progress {
     style: Style,
+    scenes: usize,
     total: usize,
     started: Instant,
     state: Mutex<State>,
@@ -28,6 +29,7 @@ enum Style {
 }
 
 struct State {
+    scenes: usize,
     keyframes: usize,
     rays: u64,
     last_line: Instant,
@@ -45,17 +47,20 @@ impl Progress {
             ProgressArg::None => Style::None,
         };
         let now = Instant::now();
-        let state = Mutex::new(State { keyframes: 0, rays: 0, last_line: now });
-        let progress = Self { style, total: keyframes, started: now, state };
+        let state = Mutex::new(State { scenes: 0, keyframes: 0, rays: 0, last_line: now });
+        let progress = Self { style, scenes, total: keyframes, started: now, state };
         progress.event(json!({ "event": "start", "scenes": scenes, "keyframes": keyframes }));
         progress
     }
 
     /// A scene's sweeps are being read.
     pub(crate) fn scene(&self, name: &str) {
+        let mut state = self.state.lock().expect("no thread panics while it counts");
+        state.scenes += 1;
+        let place = format!("{name} ({} of {} scenes)", state.scenes, self.scenes);
         match &self.style {
-            Style::Bar(bar) => bar.set_message(name.to_owned()),
-            Style::Plain => line(&format!("{name}: aggregating sweeps")),
+            Style::Bar(bar) => bar.set_message(place),
+            Style::Plain => line(&format!("{place}: aggregating sweeps")),
             Style::Json => self.event(json!({ "event": "scene", "scene": name })),
             Style::None => {}
         }
