@@ -33,9 +33,6 @@ pub struct Config {
     pub occlusion: OcclusionSettings,
     /// What the classes are.
     pub taxonomy: TaxonomyTable,
-    /// How formats are read; a table for each reader.
-    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
-    pub reader: toml::Table,
 }
 
 /// The `[grid]` table.
@@ -54,7 +51,7 @@ pub struct GridTable {
 
 /// A voxel's size: a cube's, or along x, y, z; metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "grid.voxel_size_m: a number, or three")]
 pub enum VoxelSize {
     /// The same along all axes.
     Cube(f64),
@@ -92,7 +89,10 @@ pub struct AggregateTable {
 
 /// The ego vehicle's body: `"auto"`, `"none"`, or `{ min, max }` in the ego frame, metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "aggregate.ego_box_m: \"auto\", \"none\", or { min = [x, y, z], max = [x, y, z] }"
+)]
 pub enum EgoBox {
     /// By name.
     Word(EgoWord),
@@ -131,7 +131,7 @@ pub struct RelabelTable {
 
 /// A limit, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "relabel.max_distance_m: a number, or \"none\"")]
 pub enum Limit {
     /// At most this.
     AtMost(f64),

@@ -11,10 +11,10 @@ pub(crate) fn merge(
 ) -> Result<toml::Table, Fault> {
     let mut table = parse_table(base, place)?;
     if let Some(text) = file {
-        overlay(&mut table, parse_table(text, place)?);
+        overlay(place, "", &mut table, parse_table(text, place)?)?;
     }
     for setting in settings {
-        overlay(&mut table, parse_setting(setting)?);
+        overlay("--set", "", &mut table, parse_setting(setting)?)?;
     }
     Ok(table)
 }
@@ -29,18 +29,31 @@ fn parse_table(text: &str, place: &str) -> Result<toml::Table, Fault> {
     })
 }
 
-/// Lays `upper` over `lower`, table by table.
-fn overlay(lower: &mut toml::Table, upper: toml::Table) {
+/// Lays `upper` over `lower`, table by table. Every key must be there already, under its path.
+fn overlay(
+    place: &str,
+    path: &str,
+    lower: &mut toml::Table,
+    upper: toml::Table,
+) -> Result<(), Fault> {
     for (key, value) in upper {
+        let name = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
         match (lower.get_mut(&key), value) {
             (Some(toml::Value::Table(under)), toml::Value::Table(over)) if !is_corners(&over) => {
-                overlay(under, over);
+                overlay(place, &name, under, over)?;
             }
-            (_, value) => {
-                lower.insert(key, value);
-            }
+            (Some(under), value) => *under = value,
+            (None, _) => return Err(unknown_key(place, path, lower, &name)),
         }
     }
+    Ok(())
+}
+
+fn unknown_key(place: &str, path: &str, known: &toml::Table, name: &str) -> Fault {
+    let known: Vec<&str> = known.keys().map(String::as_str).collect();
+    let kind =
+        if path.is_empty() { "one of the tables".into() } else { format!("a key of [{path}]:") };
+    Fault::new("config", place, format!("{kind} {}", known.join(", ")), format!("`{name}`"))
 }
 
 /// A pair of corners is a value: it replaces another pair as a whole.
