@@ -9,8 +9,8 @@ use std::time::SystemTime;
 
 use serde_json::{Value, json};
 use support::{
-    Label, SCENE, TestLog, files_under, gts_files, leftovers, manifest, nano_spec, npz_dates,
-    occlabel, read_arrays, report, text, tree_hash,
+    Ended, Label, SCENE, TestLog, files_under, gts_files, leftovers, manifest, nano_spec,
+    npz_dates, occlabel, read_arrays, report, text, tree_hash,
 };
 
 /// 1980-01-01 as DOS has it: years since 1980, month, day.
@@ -404,6 +404,31 @@ fn scenes_can_be_named_or_listed_in_a_file() {
 }
 
 #[test]
+fn scenes_can_be_listed_on_stdin() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let label = Label::new(&log.root(), &log.beside("out")).small();
+    let mut command = label.with(&["--scenes-from", "-", "--dry-run"]).command();
+    fs::write(log.beside("list.txt"), "scene-0002\n").expect("written");
+    let list = fs::File::open(log.beside("list.txt")).expect("a list");
+    let ended = Ended::of(command.stdin(list).output().expect("the program starts")).exits(0);
+    assert!(ended.stdout.contains("scene-0002") && !ended.stdout.contains("scene-0001"));
+}
+
+#[test]
+fn every_sweep_or_every_nth_can_be_a_keyframe() {
+    let log = TestLog::nano();
+    let of_sweeps = ["--set", "keyframes.source=sweeps"];
+    let all = Label::new(&log.root(), &log.beside("all")).small().with(&of_sweeps);
+    all.run().exits(0);
+    assert_eq!(gts_files(&all.output).len(), 9);
+    let fourth = Label::new(&log.root(), &log.beside("fourth")).small().with(&of_sweeps);
+    let fourth = fourth.with(&["--set", "keyframes.stride=4"]);
+    fourth.run().exits(0);
+    let annotated: Vec<String> = gts_files(&labelled(&[]).1.output).into_keys().collect();
+    assert_eq!(gts_files(&fourth.output).into_keys().collect::<Vec<_>>(), annotated);
+}
+
+#[test]
 fn keyframes_limit_what_is_written_not_what_is_aggregated() {
     let (log, label) = labelled(&[]);
     let tokens = log.keyframes();
@@ -647,14 +672,15 @@ mod interrupted {
         let child = started(&label);
         signal(&child, "-INT");
         let output = child.wait_with_output().expect("an end");
-        support::Ended::of(output).exits(130).tells(&["the same command goes on"]);
+        Ended::of(output).exits(130).tells(&["the same command goes on"]);
         goes_on(&log, &label);
     }
 
     #[test]
-    fn a_killed_run_goes_on_too() {
+    fn fault_39_a_second_writer_is_refused_and_a_killed_run_goes_on() {
         let (log, label) = long_run();
         let child = started(&label);
+        label.run().exits(1).tells(&[".lock", &child.id().to_string()]);
         signal(&child, "-KILL");
         assert_eq!(child.wait_with_output().expect("an end").status.code(), None);
         goes_on(&log, &label);

@@ -14,7 +14,7 @@ pub(crate) const SCENE: &str = "scene-0001";
 pub(crate) const VERSION: &str = occlabel_testkit::VERSION;
 
 /// Bytes of a point in a sweep's file.
-pub(crate) const LIDAR_FILE_BYTES: usize = 20;
+const POINT_BYTES: usize = 20;
 
 /// Put into a table, it is written as the bare `NaN` that Python writes.
 pub(crate) const NAN: &str = "<NaN>";
@@ -119,7 +119,7 @@ impl TestLog {
             let numbers: Vec<f32> = bytes.chunks_exact(4).map(number).collect();
             numbers.try_into().expect("5 numbers")
         };
-        bytes.chunks_exact(LIDAR_FILE_BYTES).map(point).collect()
+        bytes.chunks_exact(POINT_BYTES).map(point).collect()
     }
 
     /// Rewrites the points of a sweep's file.
