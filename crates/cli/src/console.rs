@@ -32,7 +32,9 @@ impl Console {
         if !self.quiet {
             self.line(&match self.format {
                 LogFormat::Text => printable(message),
-                LogFormat::Json => json!({ "level": "info", "message": message }).to_string(),
+                LogFormat::Json => {
+                    json!({ "level": "info", "message": printable(message) }).to_string()
+                }
             });
         }
     }
@@ -61,11 +63,21 @@ impl Console {
 
 fn fault_line(level: &str, scene: Option<&str>, fault: &Fault) -> String {
     let mut line = fault_json(fault);
+    escape(&mut line);
     line["level"] = json!(level);
     if let Some(scene) = scene {
-        line["scene"] = json!(scene);
+        line["scene"] = json!(printable(scene));
     }
     line.to_string()
+}
+
+/// Escapes control characters in every text: JSON leaves some of them as they are.
+fn escape(line: &mut serde_json::Value) {
+    for value in line.as_object_mut().into_iter().flat_map(|fields| fields.values_mut()) {
+        if let Some(text) = value.as_str() {
+            *value = json!(printable(text));
+        }
+    }
 }
 
 /// A fault as fields.

@@ -122,7 +122,12 @@ fn wanted_scenes(log: &LogArgs) -> Result<Option<BTreeSet<String>>, Fault> {
         read_text(list)?
     };
     let names = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    Ok(Some(names.map(str::to_owned).collect()))
+    let names: BTreeSet<String> = names.map(str::to_owned).collect();
+    if names.is_empty() {
+        let place = list.display().to_string();
+        return Err(Fault::new("scenes-from", place, "names of scenes, one a line", "none"));
+    }
+    Ok(Some(names))
 }
 
 fn unknown_as(log: &LogArgs, taxonomy: &Taxonomy) -> Result<Option<ClassId>, Fault> {

@@ -14,9 +14,15 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, Stop
     let opened = open(&args.log, &args.config)?;
     let names = opened.source.scene_names();
     console.result(&format!("{} scenes", names.len()));
-    let mut outcome = Outcome::Complete;
+    let (mut outcome, mut faults) = (Outcome::Complete, Vec::new());
     for name in names {
-        let scene = opened.source.load(&name)?;
+        let scene = match opened.source.load(&name) {
+            Ok(scene) => scene,
+            Err(fault) => {
+                faults.push(fault);
+                continue;
+            }
+        };
         describe(&scene).iter().for_each(|line| console.result(&printable(line)));
         scene.warnings.iter().for_each(|fault| console.warning(&name, fault));
         for refusal in &scene.refused {
@@ -24,7 +30,7 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, Stop
             console.warning(&name, &refusal.fault);
         }
     }
-    Ok(outcome)
+    if faults.is_empty() { Ok(outcome) } else { Err(Stop::Failed(faults)) }
 }
 
 fn describe(scene: &Scene) -> Vec<String> {

@@ -27,8 +27,9 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
+use occlabel_core::Fault;
 
-use crate::args::{Cli, Command};
+use crate::args::{Cli, Command, LogFormat};
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
 
@@ -39,12 +40,10 @@ pub fn main() -> ExitCode {
 
 /// Runs the program on these arguments, its own name first.
 pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
-    let cli = match Cli::try_parse_from(args) {
+    let args: Vec<OsString> = args.into_iter().map(Into::into).collect();
+    let cli = match Cli::try_parse_from(&args) {
         Ok(cli) => cli,
-        Err(usage) => {
-            let _ = usage.print();
-            return ExitCode::from(usage.exit_code() as u8);
-        }
+        Err(usage) => return explain(&usage, asks_for_json(&args)),
     };
     let console = Console { format: cli.log_format, quiet: cli.quiet };
     match dispatch(&cli.command, &console) {
@@ -54,6 +53,30 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitC
             ExitCode::from(stop.code())
         }
     }
+}
+
+/// Prints help, or what is wrong with the command line.
+fn explain(usage: &clap::Error, as_json: bool) -> ExitCode {
+    if usage.use_stderr() && as_json {
+        let text = usage.to_string();
+        let found = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        let console = Console { format: LogFormat::Json, quiet: false };
+        console.error(&Fault::new(
+            "usage",
+            "command line",
+            "what `occlabel --help` describes",
+            found,
+        ));
+    } else {
+        let _ = usage.print();
+    }
+    ExitCode::from(usage.exit_code() as u8)
+}
+
+/// Whether a command line that could not be parsed asks for messages as JSON.
+fn asks_for_json(args: &[OsString]) -> bool {
+    let follows = |pair: &[OsString]| pair[0] == "--log-format" && pair[1] == "json";
+    args.iter().any(|arg| arg == "--log-format=json") || args.windows(2).any(follows)
 }
 
 fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use crate::args::ProgressArg;
+use crate::args::{LogFormat, ProgressArg};
+use crate::console::Console;
 
 /// Plain lines come no more often than this, so that logs of long runs stay short.
 const PLAIN_EVERY: Duration = Duration::from_secs(10);
@@ -37,9 +38,15 @@ struct State {
 
 impl Progress {
     /// Over so many keyframes in so many scenes.
-    pub(crate) fn new(arg: ProgressArg, quiet: bool, scenes: usize, keyframes: usize) -> Self {
+    pub(crate) fn new(
+        arg: ProgressArg,
+        console: &Console,
+        scenes: usize,
+        keyframes: usize,
+    ) -> Self {
         let style = match arg {
-            _ if quiet => Style::None,
+            _ if console.quiet => Style::None,
+            ProgressArg::Auto if console.format == LogFormat::Json => Style::Json,
             ProgressArg::Auto if std::io::stderr().is_terminal() => Style::Bar(bar(keyframes)),
             ProgressArg::Bar => Style::Bar(bar(keyframes)),
             ProgressArg::Auto | ProgressArg::Plain => Style::Plain,

@@ -121,7 +121,8 @@ impl Appender {
     }
 }
 
-fn refuse_symlink(path: &Path) -> Result<(), Fault> {
+/// Refuses a path whose last part is a symbolic link.
+pub(crate) fn refuse_symlink(path: &Path) -> Result<(), Fault> {
     match fs::symlink_metadata(path) {
         Ok(meta) if meta.is_symlink() => {
             let place = path.display().to_string();

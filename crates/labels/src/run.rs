@@ -76,7 +76,8 @@ pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Beg
     create_dir(files.tree().root())?;
     let lock = WriterLock::acquire(files.lock())?;
     let earlier = Earlier::load(files)?;
-    if resume == Resume::IfSame {
+    files.refuse_links()?;
+    if resume == Resume::IfSame && !earlier.finished(files.tree()).is_empty() {
         refuse_another(files, earlier.differences(record))?;
     }
     if resume == Resume::Never {

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
+use occlabel_core::Fault;
+
 use crate::LabelTree;
+use crate::atomic::refuse_symlink;
 
 /// A run's own files at the top of a tree. Shards that run side by side have theirs each:
 /// `manifest.0-of-4.json`, `run.0-of-4.json` and so on.
@@ -51,6 +54,13 @@ impl RunFiles {
     /// `.run.lock`: which process runs it.
     pub(crate) fn lock(&self) -> PathBuf {
         self.named(".run", "lock")
+    }
+
+    /// Refuses records that are symbolic links: they could lead out of the tree.
+    pub(crate) fn refuse_links(&self) -> Result<(), Fault> {
+        [self.manifest(), self.report(), self.run(), self.journal()]
+            .iter()
+            .try_for_each(|path| refuse_symlink(path))
     }
 
     fn named(&self, stem: &str, ending: &str) -> PathBuf {

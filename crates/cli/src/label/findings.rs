@@ -1,33 +1,52 @@
 //! What a run found wrong, and what that makes of its outcome.
 
 use occlabel_core::Fault;
+use serde_json::{Value, json};
 
-use crate::console::Console;
+use crate::console::{Console, fault_json};
 use crate::exit::Outcome;
 
-/// Everything odd about the input, with its scene. Told when it is found, kept for the report.
+/// Everything odd about the input, as the report lists it. Told when it is found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
     /// Odd, but nothing is lost.
-    pub(crate) warnings: Vec<(String, Fault)>,
+    pub(crate) warnings: Vec<Value>,
     /// Skipped or degraded: each makes the exit code 3.
-    pub(crate) losses: Vec<(String, Fault)>,
+    pub(crate) losses: Vec<Value>,
 }
 
 impl Findings {
     /// Something odd.
-    pub(crate) fn warn(&mut self, console: &Console, scene: &str, fault: Fault) {
-        console.warning(scene, &fault);
-        self.warnings.push((scene.to_owned(), fault));
+    pub(crate) fn warn(&mut self, console: &Console, scene: &str, fault: &Fault) {
+        console.warning(scene, fault);
+        self.warnings.push(finding(scene, fault));
     }
 
     /// Something skipped or degraded.
-    pub(crate) fn lose(&mut self, console: &Console, scene: &str, fault: Fault) {
-        console.warning(scene, &fault);
-        self.losses.push((scene.to_owned(), fault));
+    pub(crate) fn lose(&mut self, console: &Console, scene: &str, fault: &Fault) {
+        console.warning(scene, fault);
+        self.remember(finding(scene, fault));
+    }
+
+    /// Something that was skipped or degraded when an earlier run labelled what this one keeps.
+    pub(crate) fn remember(&mut self, loss: Value) {
+        if !self.losses.contains(&loss) {
+            self.losses.push(loss);
+        }
+    }
+
+    /// What was lost of a scene.
+    pub(crate) fn losses_of(&self, scene: &str) -> Vec<Value> {
+        self.losses.iter().filter(|loss| loss["scene"] == scene).cloned().collect()
     }
 
     pub(crate) fn outcome(&self) -> Outcome {
         if self.losses.is_empty() { Outcome::Complete } else { Outcome::Degraded }
     }
+}
+
+fn finding(scene: &str, fault: &Fault) -> Value {
+    let mut finding = fault_json(fault);
+    finding["scene"] = json!(scene);
+    finding
 }

@@ -73,9 +73,10 @@ fn label_scenes(
     let files = run_files(job);
     let record = records::run_record(job, plan)?;
     let mut begun = begin(&files, &record, resume(job.args.resume)).map_err(usage_if_differs)?;
-    let finished = std::mem::take(&mut begun.finished);
+    let mut finished = std::mem::take(&mut begun.finished);
+    report::recall(&mut finished, &files.report());
     let progress =
-        Progress::new(job.args.progress, job.console.quiet, plan.scenes.len(), plan.keyframes());
+        Progress::new(job.args.progress, job.console, plan.scenes.len(), plan.keyframes());
     let mut report = Report::new();
     let mut entries = Vec::new();
     for planned in &plan.scenes {

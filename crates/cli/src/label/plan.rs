@@ -20,7 +20,7 @@ pub(crate) struct Plan {
 /// Scenes that cannot be labelled, with what is wrong.
 #[derive(Default)]
 struct Unfit {
-    unlabelled: Vec<(String, Fault)>,
+    unsettled: Vec<(String, Fault)>,
     broken: Vec<(String, Fault)>,
 }
 
@@ -44,7 +44,7 @@ impl Plan {
 
     /// How many keyframes there are to label.
     pub(crate) fn keyframes(&self) -> usize {
-        self.scenes.iter().map(|scene| scene.record.keyframes.len()).sum()
+        self.scenes.iter().map(|scene| scene.wanted.len()).sum()
     }
 
     /// The files of all sweeps, relative to the log's root, with their sizes.
@@ -66,7 +66,7 @@ impl Plan {
 impl Unfit {
     fn add(&mut self, name: &str, refused: Refused) {
         match refused {
-            Refused::NoLabels(fault) => self.unlabelled.push((name.to_owned(), fault)),
+            Refused::Configuration(fault) => self.unsettled.push((name.to_owned(), fault)),
             Refused::Broken(faults) => {
                 self.broken.extend(faults.into_iter().map(|fault| (name.to_owned(), fault)));
             }
@@ -74,21 +74,21 @@ impl Unfit {
     }
 
     fn is_empty(&self) -> bool {
-        self.unlabelled.is_empty() && self.broken.is_empty()
+        self.unsettled.is_empty() && self.broken.is_empty()
     }
 
     /// Ends the run, or goes on without these scenes.
     fn settle(self, job: &Job, is_nothing_left: bool, findings: &mut Findings) -> Result<(), Stop> {
         let faults_of =
             |list: Vec<(String, Fault)>| list.into_iter().map(|(_, fault)| fault).collect();
-        if is_nothing_left && self.broken.is_empty() && !self.unlabelled.is_empty() {
-            return Err(Stop::Usage(faults_of(self.unlabelled)));
+        if is_nothing_left && self.broken.is_empty() && !self.unsettled.is_empty() {
+            return Err(Stop::Usage(faults_of(self.unsettled)));
         }
-        let all: Vec<_> = self.broken.into_iter().chain(self.unlabelled).collect();
+        let all: Vec<_> = self.broken.into_iter().chain(self.unsettled).collect();
         if !job.skips() && !all.is_empty() {
             return Err(Stop::Failed(faults_of(all)));
         }
-        all.into_iter().for_each(|(scene, fault)| findings.lose(job.console, &scene, fault));
+        all.iter().for_each(|(scene, fault)| findings.lose(job.console, scene, fault));
         Ok(())
     }
 }

@@ -1,11 +1,12 @@
 //! What a run writes about itself: its record and the manifest.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use occlabel_core::Fault;
 use occlabel_labels::{
-    ClassRecord, GridRecord, InputRecord, JournalEntry, Manifest, Program, RunRecord, SceneRecord,
-    TaxonomyRecord, inputs_hash,
+    ClassRecord, GridRecord, InputMark, InputRecord, JournalEntry, Manifest, Program, RunRecord,
+    SceneRecord, TaxonomyRecord, inputs_hash,
 };
 use occlabel_logs::SceneSource;
 use occlabel_pipeline::{Config, GridFrame};
@@ -20,9 +21,18 @@ pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
     let root = &job.args.log.input;
     let tables =
         job.opened.source.tables().into_iter().map(|path| InputRecord::of_table(root, path));
-    let sweeps = plan.files().map(|(path, _)| InputRecord::of_sweep(root, path));
+    let sweeps = plan.files().map(|(path, _)| Ok(sweep_record(root, path)));
     let inputs = tables.chain(sweeps).collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config_json(&job.opened.config), inputs))
+}
+
+/// The record of a sweep. One that cannot even be looked at counts as empty: reading it will tell.
+fn sweep_record(root: &Path, path: &str) -> InputRecord {
+    InputRecord::of_sweep(root, path).unwrap_or_else(|_| InputRecord {
+        path: path.to_owned(),
+        bytes: 0,
+        mark: InputMark::MtimeNs(0),
+    })
 }
 
 fn config_json(config: &Config) -> Value {

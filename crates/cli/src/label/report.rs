@@ -1,16 +1,18 @@
 //! `report.json`: how a run went. Not part of the promise of the same bytes.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Instant;
 
-use occlabel_core::Fault;
 use serde_json::{Value, json};
 
-use crate::console::fault_json;
 use crate::exit::Outcome;
 use crate::label::findings::Findings;
-use crate::label::scene_run::SceneDone;
+use crate::label::scene_run::{Finished, SceneDone};
 use crate::label::tally::Tally;
+
+/// Under this name a scene of the report holds its keyframes' summaries.
+const LABELLED: &str = "labelled";
 
 /// Grows scene by scene.
 pub(crate) struct Report {
@@ -25,7 +27,7 @@ impl Report {
     }
 
     pub(crate) fn add(&mut self, name: &str, done: &SceneDone) {
-        self.scenes.insert(name.to_owned(), done.tally.json());
+        self.scenes.insert(name.to_owned(), scene_json(done));
         self.total.add(&done.tally);
     }
 
@@ -44,8 +46,8 @@ impl Report {
             },
             "scenes": self.scenes,
             "total": self.total.json(),
-            "warnings": faults_json(&findings.warnings),
-            "skipped_or_degraded": faults_json(&findings.losses),
+            "warnings": findings.warnings,
+            "skipped_or_degraded": findings.losses,
             "seconds": self.started.elapsed().as_secs_f64(),
             "peak_memory_bytes": peak_memory_bytes(),
             "threads": threads,
@@ -54,13 +56,24 @@ impl Report {
     }
 }
 
-fn faults_json(faults: &[(String, Fault)]) -> Vec<Value> {
-    let with_scene = |(scene, fault): &(String, Fault)| {
-        let mut value = fault_json(fault);
-        value["scene"] = json!(scene);
-        value
-    };
-    faults.iter().map(with_scene).collect()
+/// A scene's tally, with what is told of it one by one.
+fn scene_json(done: &SceneDone) -> Value {
+    let mut scene = done.tally.json();
+    scene["boxes_without_points"] = json!(done.tally.boxes_without_points);
+    scene["not_finite_by_sweep"] = json!(done.tally.not_finite);
+    let labelled = done.entries.iter().map(|entry| (entry.keyframe.clone(), entry.summary.clone()));
+    scene[LABELLED] = Value::Object(labelled.collect());
+    scene
+}
+
+/// Gives the keyframes that only an earlier manifest knows of what the report beside it tells of them.
+pub(crate) fn recall(finished: &mut Finished, report: &Path) {
+    let Ok(text) = std::fs::read(report) else { return };
+    let Ok(report) = serde_json::from_slice::<Value>(&text) else { return };
+    for ((scene, token), entry) in finished.iter_mut().filter(|(_, entry)| entry.summary.is_null())
+    {
+        entry.summary = report["scenes"][scene.as_str()][LABELLED][token.as_str()].clone();
+    }
 }
 
 /// The process's largest resident set, where the system tells it.

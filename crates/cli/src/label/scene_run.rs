@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
-use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene};
+use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene, Timestamp};
 use occlabel_labels::{
     FileRecord, Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz,
 };
 use occlabel_logs::SceneSource;
 use occlabel_pipeline::{aggregate_scene, label_keyframe};
+use serde_json::Value;
 
 use crate::exit::Stop;
 use crate::interrupt::Interrupt;
@@ -16,7 +17,7 @@ use crate::label::clock::StageClock;
 use crate::label::findings::Findings;
 use crate::label::planned_scene::PlannedScene;
 use crate::label::sweep_reader::SweepReader;
-use crate::label::tally::{Tally, VoxelCounts};
+use crate::label::tally::{EmptyBox, Summary, Tally, VoxelCounts};
 use crate::label::{Job, workers};
 use crate::progress::Progress;
 
@@ -27,6 +28,9 @@ pub(crate) struct SceneRun<'a> {
     pub(crate) progress: &'a Progress,
     pub(crate) interrupt: &'a Interrupt,
 }
+
+/// Keyframes that earlier runs finished, by scene and token.
+pub(crate) type Finished = BTreeMap<(String, String), JournalEntry>;
 
 /// What came of it.
 #[derive(Default)]
@@ -40,6 +44,8 @@ pub(crate) struct SceneDone {
 struct Bench<'a> {
     scene: &'a Scene,
     aggregated: &'a AggregatedScene<ClassId>,
+    /// What was lost of the scene.
+    losses: Vec<Value>,
     journal: Mutex<&'a mut Journal>,
     done: Mutex<SceneDone>,
 }
@@ -48,11 +54,11 @@ impl SceneRun<'_> {
     /// Labels what no earlier run finished.
     pub(crate) fn label(
         &self,
-        finished: &BTreeMap<(String, String), JournalEntry>,
+        finished: &Finished,
         journal: &mut Journal,
         findings: &mut Findings,
     ) -> Result<SceneDone, Stop> {
-        let mut done = self.finished_before(finished);
+        let mut done = self.finished_before(finished, findings);
         let _lock = WriterLock::of_scene(&self.job.tree, &self.planned.name)?;
         let scene = self.job.opened.source.load(&self.planned.name)?;
         let mut todo = self.keyframes_to_label(&scene, &done);
@@ -64,29 +70,36 @@ impl SceneRun<'_> {
         let aggregated = self.aggregate(&scene, &reader, &mut done.tally)?;
         let book = reader.close();
         book.tell(self.job, &scene.name, self.progress, findings);
+        done.tally.not_finite = book.not_finite();
         todo.retain(|keyframe| match book.refusal_of(&scene, keyframe) {
             Some(fault) => {
-                findings.lose(self.job.console, &scene.name, fault);
+                findings.lose(self.job.console, &scene.name, &fault);
                 false
             }
             None => true,
         });
+        let losses = findings.losses_of(&scene.name);
         let (journal, done) = (Mutex::new(journal), Mutex::new(done));
-        let bench = Bench { scene: &scene, aggregated: &aggregated, journal, done };
+        let bench = Bench { scene: &scene, aggregated: &aggregated, losses, journal, done };
         let is_over = || self.interrupt.is_raised();
         let (at_once, _) = self.planned.at_once;
         workers::for_each(&todo, at_once, is_over, |keyframe| self.finish(keyframe, &bench))?;
         Ok(bench.done.into_inner().expect("no worker panicked"))
     }
 
-    /// The wanted keyframes of which an earlier run wrote all that this one would.
-    fn finished_before(&self, finished: &BTreeMap<(String, String), JournalEntry>) -> SceneDone {
+    /// The keyframes of which an earlier run wrote all that this one would, and what it lost then.
+    fn finished_before(&self, finished: &Finished, findings: &mut Findings) -> SceneDone {
         let mut done = SceneDone::default();
         for token in &self.planned.record.keyframes {
-            let entry = finished.get(&(self.planned.name.clone(), token.clone()));
-            if let Some(entry) = entry.filter(|entry| self.has_all_files(entry)) {
-                done.keep(entry);
+            let Some(entry) = finished.get(&(self.planned.name.clone(), token.clone())) else {
+                continue;
+            };
+            if self.planned.wanted.contains(token) && !self.has_all_files(entry) {
+                continue;
             }
+            let losses = entry.summary["losses"].as_array().into_iter().flatten();
+            losses.for_each(|loss| findings.remember(loss.clone()));
+            done.keep(entry);
         }
         done
     }
@@ -97,10 +110,9 @@ impl SceneRun<'_> {
     }
 
     fn keyframes_to_label<'s>(&self, scene: &'s Scene, done: &SceneDone) -> Vec<&'s Keyframe> {
-        let wanted: BTreeSet<&String> = self.planned.record.keyframes.iter().collect();
         let finished: BTreeSet<&String> =
             done.entries.iter().map(|entry| &entry.keyframe).collect();
-        let is_due = |token| wanted.contains(token) && !finished.contains(token);
+        let is_due = |token| self.planned.wanted.contains(token) && !finished.contains(token);
         scene.keyframes.iter().filter(|keyframe| is_due(&keyframe.token)).collect()
     }
 
@@ -132,7 +144,7 @@ impl SceneRun<'_> {
             scene: bench.scene.name.clone(),
             keyframe: keyframe.token.clone(),
             files: self.write(keyframe, &labels)?,
-            summary: serde_json::to_value(VoxelCounts::of(&labels)).expect("counts are JSON"),
+            summary: bench.summary(&labels),
         };
         bench.journal.lock().expect("no worker panicked").append(&entry)?;
         let rays = bench.aggregated.point_count() as u64;
@@ -160,24 +172,38 @@ impl SceneRun<'_> {
     }
 }
 
+impl Bench<'_> {
+    fn summary(&self, labels: &OccupancyLabels) -> Value {
+        let summary = Summary { voxels: VoxelCounts::of(labels), losses: self.losses.clone() };
+        serde_json::to_value(summary).expect("counts are JSON")
+    }
+}
+
 impl SceneDone {
     /// Counts a finished keyframe.
     fn keep(&mut self, entry: &JournalEntry) {
         self.tally.keyframes += 1;
-        let counts: VoxelCounts = serde_json::from_value(entry.summary.clone()).unwrap_or_default();
-        self.tally.voxels.add(&counts);
+        let summary: Summary = serde_json::from_value(entry.summary.clone()).unwrap_or_default();
+        self.tally.voxels.add(&summary.voxels);
         self.entries.push(entry.clone());
     }
 }
 
 /// Annotated boxes at the time of a sweep that hold no point of it.
-fn boxes_without_points(scene: &Scene, aggregated: &AggregatedScene<ClassId>) -> usize {
+fn boxes_without_points(scene: &Scene, aggregated: &AggregatedScene<ClassId>) -> Vec<EmptyBox> {
     let sweeps: BTreeSet<_> = scene.sweeps.iter().map(|sweep| sweep.time).collect();
     let held: BTreeSet<_> =
         aggregated.objects.iter().map(|object| (object.track, object.time)).collect();
-    let annotated = scene.tracks.iter().flat_map(|track| {
+    let mut empty = Vec::new();
+    for track in &scene.tracks {
         let times = track.boxes.iter().map(|(time, _)| *time);
-        times.filter(|time| sweeps.contains(time)).map(|time| (track.id, time))
-    });
-    annotated.filter(|annotation| !held.contains(annotation)).count()
+        let is_empty =
+            |time: &Timestamp| sweeps.contains(time) && !held.contains(&(track.id, *time));
+        empty.extend(
+            times
+                .filter(is_empty)
+                .map(|time| EmptyBox { track: track.source_id.clone(), time_ns: time.0 }),
+        );
+    }
+    empty
 }

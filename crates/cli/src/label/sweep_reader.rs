@@ -22,6 +22,8 @@ pub(crate) struct Book {
     warnings: Vec<Fault>,
     /// Sweeps that were left out, by their file.
     lost: BTreeMap<String, Fault>,
+    /// Points without finite coordinates, by the file of their sweep.
+    not_finite: BTreeMap<String, usize>,
 }
 
 impl<'a> SweepReader<'a> {
@@ -35,7 +37,11 @@ impl<'a> SweepReader<'a> {
         sweep: &SweepHeader,
     ) -> Result<Option<PointCloud<PointLabel>>, Fault> {
         let read = self.job.opened.source.read_sweep(sweep);
+        let not_finite = read.as_ref().map_or(0, |points| count_not_finite(&points.cloud));
         let mut book = self.book.lock().expect("no reader panicked");
+        if not_finite > 0 {
+            book.not_finite.insert(sweep.file.clone(), not_finite);
+        }
         match read {
             Ok(points) => {
                 book.warnings.extend(points.warnings);
@@ -63,6 +69,11 @@ impl<'a> SweepReader<'a> {
 }
 
 impl Book {
+    /// Points without finite coordinates, by the file of their sweep.
+    pub(crate) fn not_finite(&self) -> BTreeMap<String, usize> {
+        self.not_finite.clone()
+    }
+
     /// Tells of everything. Absent files were told of before any sweep was read.
     pub(crate) fn tell(
         &self,
@@ -73,8 +84,8 @@ impl Book {
     ) {
         let lost = self.lost.values().filter(|fault| fault.rule != "missing-file");
         progress.suspend(|| {
-            self.warnings.iter().for_each(|fault| findings.warn(job.console, scene, fault.clone()));
-            lost.for_each(|fault| findings.lose(job.console, scene, fault.clone()));
+            self.warnings.iter().for_each(|fault| findings.warn(job.console, scene, fault));
+            lost.for_each(|fault| findings.lose(job.console, scene, fault));
         });
     }
 
@@ -85,4 +96,9 @@ impl Book {
         let fault = Fault::new("keyframe", &cause.place, expected, &cause.found);
         Some(fault.record(format!("keyframe {}, which is not labelled", keyframe.token)))
     }
+}
+
+fn count_not_finite(cloud: &PointCloud<PointLabel>) -> usize {
+    let is_finite = |i: &usize| cloud.positions[*i].iter().all(|c| c.is_finite());
+    cloud.len() - (0..cloud.len()).filter(is_finite).count()
 }

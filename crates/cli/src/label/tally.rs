@@ -1,18 +1,37 @@
 //! Counts of what was labelled.
 
+use std::collections::BTreeMap;
+
 use occlabel_core::{DropCounts, OccupancyLabels, VoxelState};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::label::clock::StageTimes;
 
-/// What a keyframe came out as: kept in the journal, so that a resumed run can report it.
+/// What a keyframe came out as: kept in the journal and the report, so that a later run that keeps
+/// the keyframe can tell of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Summary {
+    pub(crate) voxels: VoxelCounts,
+    /// What was skipped or degraded in its scene.
+    pub(crate) losses: Vec<Value>,
+}
+
+/// Voxels by state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct VoxelCounts {
     pub(crate) occupied: u64,
     pub(crate) free: u64,
     pub(crate) unobserved: u64,
     pub(crate) seen_by_cameras: u64,
+}
+
+/// An annotated box that holds no point.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct EmptyBox {
+    /// The log's own id of the track.
+    pub(crate) track: String,
+    pub(crate) time_ns: i64,
 }
 
 /// What a scene came out as.
@@ -26,8 +45,10 @@ pub(crate) struct Tally {
     pub(crate) dropped: DropCounts,
     /// Rays cast: points times keyframes labelled by this run.
     pub(crate) rays: u64,
-    /// Annotated boxes at the time of a sweep without a single point in it.
-    pub(crate) boxes_without_points: usize,
+    /// Annotated boxes at the time of a sweep that hold no point of it.
+    pub(crate) boxes_without_points: Vec<EmptyBox>,
+    /// Points without finite coordinates, by the file of their sweep.
+    pub(crate) not_finite: BTreeMap<String, usize>,
     pub(crate) voxels: VoxelCounts,
     pub(crate) times: StageTimes,
 }
@@ -58,7 +79,7 @@ impl Tally {
         self.points += other.points;
         self.dropped += other.dropped;
         self.rays += other.rays;
-        self.boxes_without_points += other.boxes_without_points;
+        self.boxes_without_points.extend_from_slice(&other.boxes_without_points);
         self.voxels.add(&other.voxels);
         self.times.add(&other.times);
     }
@@ -84,7 +105,7 @@ impl Tally {
             "points": self.points,
             "dropped": drops_json(&self.dropped),
             "rays": self.rays,
-            "boxes_without_points": self.boxes_without_points,
+            "boxes_without_points": self.boxes_without_points.len(),
             "voxels": self.voxels,
             "seconds_by_stage": self.times.seconds(),
         })

@@ -20,6 +20,8 @@ pub(super) struct LabelFile {
     pub(super) encoding: LabelEncoding,
     /// Relative to the log's root.
     pub(super) file: String,
+    /// Why the file's name cannot be trusted, if so.
+    pub(super) defect: Option<Fault>,
 }
 
 /// How a file holds raw labels.
@@ -76,10 +78,9 @@ fn read_one<T: LabelTable>(folder: &Path) -> Result<LabelFiles, Fault> {
         |_| Ok(true),
         |row: Row<T>| {
             let (sweep, file) = row.sweep_and_file();
-            if let Some(defect) = name_defect(file) {
-                return Err(row.fault("file-name", "a path below the log's root", defect));
-            }
-            let labels = LabelFile { encoding: T::ENCODING, file: file.to_owned() };
+            let defect = name_defect(file)
+                .map(|defect| row.fault("file-name", "a path below the log's root", defect));
+            let labels = LabelFile { encoding: T::ENCODING, file: file.to_owned(), defect };
             match files.insert(sweep.clone(), labels) {
                 Some(_) => {
                     Err(row.fault("label-file", "one file a sweep", format!("another for {sweep}")))

@@ -15,6 +15,9 @@ use super::tracks::scene_tracks;
 
 /// Everything of a scene but its points (labels.md section 2).
 pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, Fault> {
+    if let Some(fault) = &rows.name_fault {
+        return Err(fault.clone());
+    }
     let (settings, mut notes) = (&log.options.keyframes, Notes::default());
     let captures = Captures::of_scene(&log.tables, rows)?;
     report_jumps(&captures.lidars, &mut notes);
@@ -70,7 +73,7 @@ fn keyframes(
 }
 
 fn lost(moment: &Moment<'_>) -> Fault {
-    let expected = "a usable ego pose of the reference sweep";
+    let expected = "a usable reference sweep";
     Fault::new("keyframe-sweep", "sample_data.json", expected, "a refused one")
         .record(&moment.token)
 }

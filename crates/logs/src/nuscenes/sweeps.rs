@@ -24,7 +24,7 @@ pub(super) fn report_jumps(sweeps: &[Capture<'_>], notes: &mut Notes) {
 }
 
 /// The headers of the readable sweeps, each with its place among `sweeps`. A sweep without a usable
-/// ego pose is refused.
+/// ego pose, or whose labels lie outside the root, is refused.
 ///
 /// # Errors
 /// If a lidar's mounting is unusable, or an ego pose is not there at all.
@@ -39,7 +39,10 @@ pub(super) fn sweep_headers(
         let ego_from_lidar = sweep.calibration.pose(order, notes)?;
         let ego = sweep.row.follow(&log.tables.poses, &sweep.row.ego_pose_token)?;
         let world_from_ego = ego.pose(order, notes);
-        if let Some(world_from_ego) = notes.accept(Loss::Sweep, world_from_ego) {
+        let labels = log.tables.labels.get(&sweep.row.token);
+        if let Some(defect) = labels.and_then(|labels| labels.defect.clone()) {
+            notes.refuse(Loss::Sweep, defect);
+        } else if let Some(world_from_ego) = notes.accept(Loss::Sweep, world_from_ego) {
             headers.push((place, header(log, sweep, world_from_ego, ego_from_lidar)));
         }
     }

@@ -20,6 +20,8 @@ use super::token::Token;
 pub(super) struct SceneRows {
     /// The scene's name.
     pub(super) name: String,
+    /// Why the name cannot be that of a folder, if so.
+    pub(super) name_fault: Option<Fault>,
     /// Its annotated moments.
     pub(super) samples: Vec<Row<Sample>>,
     /// Its sweeps and images.
@@ -29,9 +31,9 @@ pub(super) struct SceneRows {
 }
 
 impl SceneRows {
-    fn named(name: &str) -> Self {
+    fn named(name: &str, name_fault: Option<Fault>) -> Self {
         let (samples, captures, annotations) = (Vec::new(), Vec::new(), Vec::new());
-        Self { name: name.to_owned(), samples, captures, annotations }
+        Self { name: name.to_owned(), name_fault, samples, captures, annotations }
     }
 }
 
@@ -103,8 +105,11 @@ fn read_scenes(
     for row in rows {
         let place = is_wanted(&row.name).then_some(scenes.len());
         if place.is_some() {
-            check_name(&row, names.insert(row.name.clone()))?;
-            scenes.push(SceneRows::named(&row.name));
+            if !names.insert(row.name.clone()) {
+                return Err(name_fault(&row, "a name of its own"));
+            }
+            let name_fault = (!is_folder_name(&row.name)).then(|| name_fault(&row, PLAIN_NAME));
+            scenes.push(SceneRows::named(&row.name, name_fault));
         }
         if scene_of.insert(row.token.clone(), place).is_some() {
             return Err(row.located(repeated::<SceneRow>()));
@@ -123,13 +128,11 @@ fn check_wanted(rows: &[Row<SceneRow>], wanted: Option<&BTreeSet<String>>) -> Re
     Err(if near.is_empty() { fault } else { fault.hint(format!("there is {near}")) })
 }
 
-fn check_name(row: &Row<SceneRow>, is_first: bool) -> Result<(), Fault> {
-    let fault = |expected: &str| Err(row.fault("scene-name", expected, format!("`{}`", row.name)));
-    match (is_folder_name(&row.name), is_first) {
-        (false, _) => fault("a name of letters, digits, `.`, `_` and `-`"),
-        (true, false) => fault("a name of its own"),
-        (true, true) => Ok(()),
-    }
+/// What the name of an output folder is made of.
+const PLAIN_NAME: &str = "a name of letters, digits, `.`, `_` and `-`";
+
+fn name_fault(row: &Row<SceneRow>, expected: &str) -> Fault {
+    row.fault("scene-name", expected, format!("`{}`", row.name))
 }
 
 /// Gives the wanted scenes their samples; tells of every sample which scene it belongs to.

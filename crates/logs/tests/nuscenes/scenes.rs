@@ -251,6 +251,7 @@ fn fault_36_files_outside_the_root_and_unsafe_names_are_refused() {
     for name in ["../../x", "..", "", "a b", "a/b"] {
         let text = refusal("scene", "scene-a", "name", name);
         assert!(text.starts_with("scene.json (scene-a, at byte"), "{text}");
+        assert!(text.contains("a name of letters"), "{text}");
     }
 }
 

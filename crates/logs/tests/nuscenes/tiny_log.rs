@@ -95,7 +95,8 @@ impl TinyLog {
 
     /// The scene, however it goes.
     pub(crate) fn load(&self) -> Result<Scene, Fault> {
-        self.open()?.log.load("scene-0001")
+        let open = self.open()?;
+        open.log.load(&open.log.scene_names()[0])
     }
 
     /// The scene, which has to be readable.
