@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
 /// drives.
 #[derive(Debug, Parser)]
-#[command(name = "occlabel", version)]
+#[command(name = "occlabel", bin_name = "occlabel", version)]
 #[command(
     after_help = "Exit codes: 0 complete, 1 failed, 2 usage or configuration, 3 finished with \
     something skipped or degraded, 130 interrupted (the same command goes on from there).\n\

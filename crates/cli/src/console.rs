@@ -1,6 +1,7 @@
 //! Messages on stderr: text or JSON lines. Results go to stdout.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
+use std::sync::Mutex;
 
 use occlabel_core::{Fault, printable};
 use serde_json::json;
@@ -8,13 +9,19 @@ use serde_json::json;
 use crate::args::LogFormat;
 
 /// Where messages go, and how.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct Console {
     pub(crate) format: LogFormat,
     pub(crate) quiet: bool,
+    /// What kept a result from being written, if anything did.
+    refused: Mutex<Option<Fault>>,
 }
 
 impl Console {
+    pub(crate) fn new(format: LogFormat, quiet: bool) -> Self {
+        Self { format, quiet, refused: Mutex::default() }
+    }
+
     /// What the user must know.
     pub(crate) fn error(&self, fault: &Fault) {
         self.write("error", fault);
@@ -39,9 +46,27 @@ impl Console {
         }
     }
 
-    /// A line of the result. A reader that went away is no error.
+    /// A line of the result.
     pub(crate) fn result(&self, line: &str) {
-        let _ = writeln!(std::io::stdout(), "{line}");
+        self.results(format!("{line}\n").as_bytes());
+    }
+
+    /// Bytes of the result. A reader that went away is no error; a full disk is, and is kept.
+    pub(crate) fn results(&self, bytes: &[u8]) {
+        let mut stdout = std::io::stdout();
+        match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                let fault =
+                    Fault::new("stdout", "stdout", "to write the result", error.to_string());
+                *self.refused.lock().expect("no thread panics while it prints") = Some(fault);
+            }
+            _ => {}
+        }
+    }
+
+    /// What kept a result from being written, if anything did.
+    pub(crate) fn refused(&self) -> Option<Fault> {
+        self.refused.lock().expect("no thread panics while it prints").take()
     }
 
     fn write(&self, level: &str, fault: &Fault) {

@@ -45,8 +45,9 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitC
         Ok(cli) => cli,
         Err(usage) => return explain(&usage, asks_for_json(&args)),
     };
-    let console = Console { format: cli.log_format, quiet: cli.quiet };
-    match dispatch(&cli.command, &console) {
+    let console = Console::new(cli.log_format, cli.quiet);
+    let ended = dispatch(&cli.command, &console);
+    match console.refused().map_or(ended, |fault| Err(fault.into())) {
         Ok(outcome) => outcome.into(),
         Err(stop) => {
             stop.faults().iter().for_each(|fault| console.error(fault));
@@ -60,7 +61,7 @@ fn explain(usage: &clap::Error, as_json: bool) -> ExitCode {
     if usage.use_stderr() && as_json {
         let text = usage.to_string();
         let found = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
-        let console = Console { format: LogFormat::Json, quiet: false };
+        let console = Console::new(LogFormat::Json, false);
         console.error(&Fault::new(
             "usage",
             "command line",
@@ -85,7 +86,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Label(args) => label::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),
-        Command::Completions { shell } => completions::run(shell),
-        Command::Man => completions::man(),
+        Command::Completions { shell } => completions::run(shell, console),
+        Command::Man => completions::man(console),
     }
 }

@@ -131,7 +131,7 @@ impl Progress {
 fn bar(keyframes: usize) -> ProgressBar {
     let template = "{msg} {wide_bar} {pos}/{len} keyframes, {prefix}, {eta} left";
     let style = ProgressStyle::with_template(template).expect("a valid template");
-    ProgressBar::new(keyframes as u64).with_style(style)
+    ProgressBar::new(keyframes as u64).with_style(style).with_prefix("0.0 M rays/s")
 }
 
 fn line(text: &str) {

@@ -54,6 +54,13 @@ pub struct StandingBox {
 }
 
 impl<'a> Instant<'a> {
+    /// How many points of the window serve this instant, each with its ray.
+    pub fn ray_count(&self) -> u64 {
+        let background: usize = self.background.iter().map(|sweep| sweep.cloud.len()).sum();
+        let objects: usize = self.objects.iter().map(|placed| placed.object.cloud.len()).sum();
+        (background + objects) as u64
+    }
+
     /// The instant of a whole scene in which nothing moves, its grid being world: for tests and
     /// examples.
     pub fn still(scene: &'a AggregatedScene<ClassId>) -> Self {

@@ -59,7 +59,14 @@ pub fn create_dir(path: &Path) -> Result<(), Fault> {
         Err(error) if error.kind() != ErrorKind::AlreadyExists || !path.is_dir() => Err(error),
         _ => sync_folder_of(path),
     }
-    .map_err(|error| write_fault(path, 0, &error))
+    .map_err(|error| {
+        Fault::new(
+            "folder",
+            path.display().to_string(),
+            "a folder, or to create one",
+            error.to_string(),
+        )
+    })
 }
 
 /// Removes a file. One that is not there is no error.

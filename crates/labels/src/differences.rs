@@ -13,10 +13,9 @@ pub(crate) fn differences(before: &Value, now: &Value) -> Vec<String> {
 }
 
 /// The differences in one line.
-pub(crate) fn in_one_line(mut differences: Vec<String>) -> String {
+pub(crate) fn in_one_line(differences: &[String]) -> String {
     let more = differences.len().saturating_sub(MAX_TOLD);
-    differences.truncate(MAX_TOLD);
-    let told = differences.join("; ");
+    let told = differences[..differences.len() - more].join("; ");
     if more == 0 { told } else { format!("{told}; and {more} more") }
 }
 
@@ -65,7 +64,7 @@ mod tests {
     #[test]
     fn many_differences_stay_one_line() {
         let now: Map<String, Value> = (0..100).map(|i| (format!("k{i:03}"), json!(i))).collect();
-        let line = in_one_line(differences(&json!({}), &Value::Object(now)));
+        let line = in_one_line(&differences(&json!({}), &Value::Object(now)));
         assert!(line.starts_with("k000: absent before, 0 now; k001"), "{line}");
         assert!(line.ends_with("k011: absent before, 11 now; and 88 more"), "{line}");
     }

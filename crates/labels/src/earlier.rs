@@ -17,6 +17,8 @@ pub(crate) struct Earlier {
     run: Option<RunRecord>,
     journal: Vec<JournalEntry>,
     manifest: Option<Manifest>,
+    /// What the report says of the inputs, their times included.
+    inputs_mark: Option<String>,
 }
 
 impl Earlier {
@@ -26,6 +28,7 @@ impl Earlier {
             run: json::read(&files.run())?,
             journal: journal::read(&files.journal())?,
             manifest: Manifest::load(&files.manifest())?,
+            inputs_mark: reported_mark(files),
         })
     }
 
@@ -34,9 +37,19 @@ impl Earlier {
     pub(crate) fn differences(&self, now: &RunRecord) -> Vec<String> {
         match (&self.run, &self.manifest) {
             (Some(run), _) => differences(&by_key(run), &by_key(now)),
-            (None, Some(manifest)) => differences(&manifest_identity(manifest), &identity(now)),
+            (None, Some(manifest)) => self.differences_of_finished(manifest, now),
             (None, None) => Vec::new(),
         }
+    }
+
+    /// The manifest knows no times of sweeps, the report beside it does.
+    fn differences_of_finished(&self, manifest: &Manifest, now: &RunRecord) -> Vec<String> {
+        let mut found = differences(&manifest_identity(manifest), &identity(now));
+        let is_touched = self.inputs_mark.as_ref().is_some_and(|mark| *mark != inputs_mark(now));
+        if found.is_empty() && is_touched {
+            found.push("inputs: sweeps were changed since".to_owned());
+        }
+        found
     }
 
     /// Whether there is a manifest, and a run of this record would write the same.
@@ -79,6 +92,26 @@ impl Earlier {
         let listed = self.manifest.iter().flat_map(|manifest| &manifest.files);
         noted.chain(listed).map(|file| &file.path).collect()
     }
+}
+
+/// The key of a report under which the mark of the inputs stands.
+const INPUTS_MARK: &str = "inputs_mark";
+
+/// A mark of a run's inputs, sizes and times of sweeps included.
+fn inputs_mark(run: &RunRecord) -> String {
+    json::json_hash(&run.inputs)
+}
+
+/// Puts the mark of a run's inputs into its report.
+pub(crate) fn mark_report(report: &mut Value, run: &RunRecord) {
+    if let Some(report) = report.as_object_mut() {
+        report.insert(INPUTS_MARK.to_owned(), json!(inputs_mark(run)));
+    }
+}
+
+fn reported_mark(files: &RunFiles) -> Option<String> {
+    let report: Value = json::read(&files.report()).ok()??;
+    Some(report.get(INPUTS_MARK)?.as_str()?.to_owned())
 }
 
 /// The keyframes of a manifest, each with its files.

@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use crate::atomic::{create_dir, remove_file, write_file};
 use crate::differences::in_one_line;
-use crate::earlier::Earlier;
+use crate::earlier::{Earlier, mark_report};
 use crate::{InputRecord, Journal, JournalEntry, Manifest, Program, RunFiles, WriterLock, json};
 
 /// The rule of a fault that refuses to go on with another run: exit code 2.
@@ -59,9 +59,13 @@ impl RunRecord {
 pub struct Begun {
     /// Keyframes that are finished already, by scene and token.
     pub finished: BTreeMap<(String, String), JournalEntry>,
+    /// In what the run that finished them differs from this one: not empty under [`Resume::Always`]
+    /// alone.
+    pub differences: Vec<String>,
     /// Where each further one is noted.
     pub journal: Journal,
     files: RunFiles,
+    record: RunRecord,
     /// Keeps a second process out of the same run.
     _lock: WriterLock,
 }
@@ -77,8 +81,9 @@ pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Beg
     let lock = WriterLock::acquire(files.lock())?;
     let earlier = Earlier::load(files)?;
     files.refuse_links()?;
+    let differences = earlier.differences(record);
     if resume == Resume::IfSame && !earlier.finished(files.tree()).is_empty() {
-        refuse_another(files, earlier.differences(record))?;
+        refuse_another(files, &differences)?;
     }
     if resume == Resume::Never {
         earlier.remove(files)?;
@@ -93,7 +98,9 @@ pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Beg
         remove_file(&files.manifest())?;
         remove_file(&files.report())?;
     }
-    Ok(Begun { finished, journal, files: files.clone(), _lock: lock })
+    let differences = if finished.is_empty() { Vec::new() } else { differences };
+    let (files, record) = (files.clone(), record.clone());
+    Ok(Begun { finished, differences, journal, files, record, _lock: lock })
 }
 
 impl Begun {
@@ -101,22 +108,23 @@ impl Begun {
     ///
     /// # Errors
     /// If they cannot be written or removed.
-    pub fn end(self, manifest: &Manifest, report: &impl Serialize) -> Result<(), Fault> {
-        write_file(&self.files.report(), &json::pretty(report))?;
+    pub fn end(self, manifest: &Manifest, mut report: Value) -> Result<(), Fault> {
+        mark_report(&mut report, &self.record);
+        write_file(&self.files.report(), &json::pretty(&report))?;
         write_file(&self.files.manifest(), &manifest.to_json())?;
         remove_file(&self.files.journal())?;
         remove_file(&self.files.run())
     }
 }
 
-fn refuse_another(files: &RunFiles, differences: Vec<String>) -> Result<(), Fault> {
+fn refuse_another(files: &RunFiles, differences: &[String]) -> Result<(), Fault> {
     if differences.is_empty() {
         return Ok(());
     }
     let place = files.tree().root().display().to_string();
     let expected = "the version, configuration and inputs of the run that was here";
     Err(Fault::new(RESUME_DIFFERS, place, expected, in_one_line(differences)).hint(
-        "--resume never starts anew, --resume always keeps what is finished, or give another --output",
+        "give another --output, or --resume never to start anew, --resume always to keep what is finished",
     ))
 }
 
@@ -181,7 +189,7 @@ mod tests {
         let listed = hash_files(files.tree(), paths).unwrap();
         let inputs_hash = inputs_hash(&record().inputs);
         let manifest = Manifest { files: listed, inputs_hash, ..manifest() };
-        begun.end(&manifest, &json!({"seconds": 1.5})).unwrap();
+        begun.end(&manifest, json!({"seconds": 1.5})).unwrap();
         (folder, files)
     }
 
@@ -296,18 +304,26 @@ mod tests {
     fn a_finished_run_given_again_has_nothing_to_do_and_ends_with_the_same_manifest() {
         let (_folder, files) = complete();
         let before = fs::read(files.manifest()).unwrap();
-        let mut touched = record();
-        touched.inputs[1].mark = InputMark::MtimeNs(8);
-        let begun = begin(&files, &touched, Resume::IfSame).unwrap();
+        let begun = begin(&files, &record(), Resume::IfSame).unwrap();
         assert_eq!(keyframes(&begun), ["k1", "k2"]);
         drop(begun);
         assert_eq!(fs::read(files.manifest()).unwrap(), before);
 
-        let again = begin(&files, &touched, Resume::IfSame).unwrap();
+        let again = begin(&files, &record(), Resume::IfSame).unwrap();
         assert_eq!(keyframes(&again), ["k1", "k2"]);
         let manifest = Manifest::load(&files.manifest()).unwrap().unwrap();
-        again.end(&manifest, &json!({})).unwrap();
+        again.end(&manifest, json!({})).unwrap();
         assert_eq!(fs::read(files.manifest()).unwrap(), before);
+    }
+
+    #[test]
+    fn fault_40_a_sweep_touched_since_a_finished_run_is_noticed() {
+        let (_folder, files) = complete();
+        let mut touched = record();
+        touched.inputs[1].mark = InputMark::MtimeNs(8);
+        assert_eq!(begin(&files, &touched, Resume::IfSame).unwrap_err().rule, RESUME_DIFFERS);
+        let kept = begin(&files, &touched, Resume::Always).unwrap();
+        assert_eq!((keyframes(&kept), kept.differences.len()), (vec!["k1", "k2"], 1));
     }
 
     #[test]
@@ -325,7 +341,7 @@ mod tests {
         fs::write(&path, b"x").unwrap();
         for root in [path.clone(), path.join("deeper")] {
             let files = RunFiles::whole(LabelTree::new(root));
-            assert_eq!(begin(&files, &record(), Resume::IfSame).unwrap_err().rule, "write");
+            assert_eq!(begin(&files, &record(), Resume::IfSame).unwrap_err().rule, "folder");
         }
         assert_eq!(fs::read(Path::new(&path)).unwrap(), b"x");
     }

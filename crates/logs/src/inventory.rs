@@ -51,13 +51,24 @@ impl Inventory {
         self.present.iter().map(|(_, bytes)| bytes).sum()
     }
 
-    /// About how many bytes are missing: each file weighs as the median of the present ones.
+    /// About how many bytes are missing: each file weighs as the median of the present ones of
+    /// its kind.
     pub fn missing_bytes(&self) -> u64 {
-        let mut sizes: Vec<u64> = self.present.iter().map(|(_, bytes)| *bytes).collect();
-        sizes.sort_unstable();
-        let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(0);
-        typical * self.missing.len() as u64
+        self.missing.iter().map(|missing| self.typical_bytes(kind(&missing.file))).sum()
     }
+
+    fn typical_bytes(&self, of_kind: &str) -> u64 {
+        let alike = self.present.iter().filter(|(file, _)| kind(file) == of_kind);
+        let mut sizes: Vec<u64> = alike.map(|(_, bytes)| *bytes).collect();
+        sizes.sort_unstable();
+        sizes.get(sizes.len() / 2).copied().unwrap_or(0)
+    }
+}
+
+/// What a file holds, told by its ending: `pcd.bin`, `npz`.
+fn kind(file: &str) -> &str {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    name.split_once('.').map_or("", |(_, ending)| ending)
 }
 
 /// A file's size; `None` if it is absent. One that is there but cannot be looked at counts as empty:

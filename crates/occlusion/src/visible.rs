@@ -28,11 +28,11 @@ pub struct OcclusionSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CameraRays {
-    /// To the centre of each occupied voxel in view [Occ3D text, GS-Occ3D].
+    /// To the centre of each occupied voxel in view (Occ3D text, GS-Occ3D).
     OccupiedCenters,
     /// To the centre of each voxel in view.
     AllCenters,
-    /// Through pixel centres [Occ3D Algorithm 3, with the text's stop].
+    /// Through pixel centres (Occ3D Algorithm 3, with the text's stop).
     Pixels,
 }
 
@@ -42,7 +42,7 @@ pub enum CameraRays {
 pub enum Occluders {
     /// All of them.
     All,
-    /// All but those of flat classes, which are seen wherever they are in view [published masks].
+    /// All but those of flat classes, which are seen wherever they are in view (published masks).
     NonFlat,
 }
 

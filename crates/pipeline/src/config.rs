@@ -51,7 +51,7 @@ pub struct GridTable {
 
 /// A voxel's size: a cube's, or along x, y, z; metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "grid.voxel_size_m: a number, or three")]
+#[serde(untagged, expecting = "neither a number nor three")]
 pub enum VoxelSize {
     /// The same along all axes.
     Cube(f64),
@@ -63,9 +63,9 @@ pub enum VoxelSize {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GridFrame {
-    /// The reference sweep's ego frame [Occ3D].
+    /// The reference sweep's ego frame (Occ3D).
     Ego,
-    /// The reference sweep's lidar frame [SurroundOcc].
+    /// The reference sweep's lidar frame (SurroundOcc).
     Lidar,
 }
 
@@ -91,7 +91,7 @@ pub struct AggregateTable {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(
     untagged,
-    expecting = "aggregate.ego_box_m: \"auto\", \"none\", or { min = [x, y, z], max = [x, y, z] }"
+    expecting = "neither \"auto\", \"none\" nor { min = [x, y, z], max = [x, y, z] }"
 )]
 pub enum EgoBox {
     /// By name.
@@ -131,7 +131,7 @@ pub struct RelabelTable {
 
 /// A limit, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "relabel.max_distance_m: a number, or \"none\"")]
+#[serde(untagged, expecting = "neither a number nor \"none\"")]
 pub enum Limit {
     /// At most this.
     AtMost(f64),
@@ -186,17 +186,13 @@ impl Config {
         file: Option<&str>,
         settings: &[String],
     ) -> Result<Self, Fault> {
-        let config: Self = layers::merge(place, base, file, settings)?.try_into().map_err(
-            |error: toml::de::Error| {
-                let found = error.message().trim().to_owned();
-                Fault::new(
-                    "config",
-                    place,
-                    "the keys that `occlabel presets precise` prints",
-                    found,
-                )
-            },
-        )?;
+        let table = layers::merge(place, base, file, settings)?;
+        let config: Self = serde_path_to_error::deserialize(table).map_err(|error| {
+            let expected = "a value as `occlabel presets precise` shows";
+            let (key, found) =
+                (error.path().to_string(), error.inner().message().trim().to_owned());
+            Fault::new("config", key, expected, found)
+        })?;
         check::check(&config)?;
         Ok(config)
     }

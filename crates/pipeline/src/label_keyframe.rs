@@ -31,7 +31,16 @@ pub enum Stage {
     Finish,
 }
 
-/// The labels of a keyframe.
+/// A keyframe's labels, and what they cost.
+#[derive(Clone, Debug)]
+pub struct LabelledKeyframe {
+    /// The arrays.
+    pub labels: OccupancyLabels,
+    /// How many rays they rest on.
+    pub rays: u64,
+}
+
+/// Labels a keyframe.
 ///
 /// `shards` is how many threads the rays are shared out over; `enter` is told which stage begins.
 /// Neither shows in the labels.
@@ -42,7 +51,7 @@ pub fn label_keyframe(
     rules: &Rules,
     shards: usize,
     mut enter: impl FnMut(Stage),
-) -> OccupancyLabels {
+) -> LabelledKeyframe {
     let (spec, ground) = (&rules.spec, &rules.taxonomy.flat);
     let reference = scene.reference_sweep(keyframe);
     let grid_from_world = rules.world_from_grid(reference).inverse();
@@ -68,7 +77,8 @@ pub fn label_keyframe(
     enter(Stage::Finish);
     let occupied = occupied_votes(&states, &votes);
     let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
-    arrays(rules.taxonomy.free, &states, &occupied, &counts, camera_bits, flow)
+    let labels = arrays(rules.taxonomy.free, &states, &occupied, &counts, camera_bits, flow);
+    LabelledKeyframe { labels, rays: instant.ray_count() }
 }
 
 fn open_eyes<'a>(scene: &'a Scene, keyframe: &Keyframe, grid_from_world: &Pose) -> Vec<Eye<'a>> {

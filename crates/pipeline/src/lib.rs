@@ -33,7 +33,7 @@ mod rules;
 
 pub use aggregate_scene::{aggregate_scene, boxes_at};
 pub use config::{Autos, Config, EgoBox, GridFrame, Limit};
-pub use label_keyframe::{Stage, label_keyframe};
+pub use label_keyframe::{LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
 pub use presets::{PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_taxonomy};
 pub use rules::Rules;

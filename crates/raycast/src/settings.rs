@@ -27,7 +27,7 @@ pub struct RaySettings {
 pub enum Outside {
     /// Its crossings inside count.
     Clip,
-    /// Nothing [Occ3D].
+    /// Nothing (Occ3D).
     Drop,
 }
 
@@ -37,7 +37,7 @@ pub enum Outside {
 pub enum ObjectRays {
     /// The ray that saw the point: in the world up to its box, then along with the box.
     Own,
-    /// One from the keyframe's reference lidar [Occ3D code].
+    /// One from the keyframe's reference lidar (Occ3D code).
     Current,
     /// None: the hit only.
     Hits,

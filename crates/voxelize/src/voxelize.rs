@@ -23,7 +23,7 @@ pub struct VoteSettings {
 pub enum Vote {
     /// All of them.
     Majority,
-    /// Track points of a mover class alone, where there are any [MobileOcc].
+    /// Track points of a mover class alone, where there are any (MobileOcc).
     MoversFirst,
 }
 

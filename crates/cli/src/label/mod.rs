@@ -21,7 +21,7 @@ use crate::input::{Opened, open};
 use crate::interrupt::Interrupt;
 use crate::label::findings::Findings;
 use crate::label::plan::Plan;
-use crate::label::report::Report;
+use crate::label::report::{EarlierReport, Report};
 use crate::label::scene_run::SceneRun;
 use crate::progress::Progress;
 
@@ -72,9 +72,11 @@ fn label_scenes(
 ) -> Result<Outcome, Stop> {
     let files = run_files(job);
     let record = records::run_record(job, plan)?;
+    let earlier = EarlierReport::load(&files.report());
     let mut begun = begin(&files, &record, resume(job.args.resume)).map_err(usage_if_differs)?;
     let mut finished = std::mem::take(&mut begun.finished);
-    report::recall(&mut finished, &files.report());
+    earlier.recall(&mut finished);
+    warn_of_others(job, &begun.differences, &mut findings);
     let progress =
         Progress::new(job.args.progress, job.console, plan.scenes.len(), plan.keyframes());
     let mut report = Report::new();
@@ -93,9 +95,19 @@ fn label_scenes(
     progress.finish();
     let outcome = findings.outcome();
     let manifest = records::manifest(job, plan, &record, &entries);
-    begun.end(&manifest, &report.json(outcome, &findings, job.threads))?;
+    begun.end(&manifest, report.json(outcome, &findings, job.threads))?;
     job.console.result(&report.total_line());
     Ok(outcome)
+}
+
+/// Tells that keyframes are kept which this configuration or these inputs would not give.
+fn warn_of_others(job: &Job, differences: &[String], findings: &mut Findings) {
+    if !differences.is_empty() {
+        let place = job.args.output.display().to_string();
+        let expected = "finished keyframes of this very run";
+        let fault = Fault::new("kept-others", place, expected, differences.join("; "));
+        findings.warn(job.console, "all scenes", &fault);
+    }
 }
 
 fn run_files(job: &Job) -> RunFiles {

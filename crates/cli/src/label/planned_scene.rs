@@ -28,6 +28,8 @@ pub(crate) struct PlannedScene {
     pub(crate) files: Vec<(String, u64)>,
     /// How many keyframes at once, and in how many shards of rays each.
     pub(crate) at_once: (usize, usize),
+    /// An upper estimate of the memory that takes.
+    memory_bytes: u64,
     sweeps: usize,
 }
 
@@ -54,17 +56,22 @@ impl PlannedScene {
             return Ok(None);
         }
         job.opened.rules.check_labels(&scene).map_err(Refused::Configuration)?;
-        for fault in &scene.warnings {
-            findings.warn(job.console, name, fault);
+        scene.warnings.iter().for_each(|fault| findings.warn(job.console, name, fault));
+        if !scene.has_point_labels() {
+            findings.warn(job.console, name, &no_labels(job));
         }
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
+        let points = inventory.present_bytes() / BYTES_A_POINT;
+        let model = MemoryModel::new(points, &job.opened.rules.spec);
+        let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
             name: name.to_owned(),
             record: scene_record(job, &scene),
             wanted,
-            at_once: fit(job, &scene, inventory.present_bytes())?,
+            at_once,
+            memory_bytes: model.bytes(at_once.0, at_once.1),
             files: inventory.present,
             sweeps: scene.sweeps.len(),
         }))
@@ -78,8 +85,8 @@ impl PlannedScene {
         let seconds = rays as f64 * CPU_SECONDS_A_RAY;
         format!(
             "{}: {keyframes} keyframes, {} sweeps, {bytes} bytes; at most {points} points, {rays} rays, \
-             expected time {seconds:.1} CPU-seconds",
-            self.name, self.sweeps,
+             {} bytes of memory; expected time {seconds:.1} CPU-seconds",
+            self.name, self.sweeps, self.memory_bytes,
         )
     }
 }
@@ -97,6 +104,13 @@ fn chosen_keyframes(job: &Job, scene: &Scene, tokens: &mut BTreeSet<&str>) -> BT
     scene.keyframes.iter().filter(is_chosen).map(|keyframe| keyframe.token.clone()).collect()
 }
 
+/// What becomes of background in a scene without point labels.
+fn no_labels(job: &Job) -> Fault {
+    let class = &job.opened.config.relabel.unknown_class;
+    let found = format!("none: what no box covers becomes `{class}`");
+    Fault::new("no-labels", "point labels", "labels on some sweeps", found)
+}
+
 /// Records that the reader refused.
 fn lose_refused(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<(), Refused> {
     let faults: Vec<Fault> = scene.refused.iter().map(|refusal| refusal.fault.clone()).collect();
@@ -112,7 +126,7 @@ fn lose_missing(
 ) -> Result<(), Refused> {
     let may_miss = |file: &MissingFile| job.args.allow_missing_sweeps && !file.is_reference;
     let is_allowed = job.skips() || inventory.missing.iter().all(may_miss);
-    let about = (!inventory.missing.is_empty()).then(|| about_missing(scene, inventory));
+    let about = (!inventory.missing.is_empty()).then(|| about_missing(job, inventory));
     let faults = about.into_iter().chain(inventory.missing.iter().map(missing_fault)).collect();
     lose(job, scene, faults, is_allowed, findings)
 }
@@ -137,24 +151,36 @@ fn missing_fault(missing: &MissingFile) -> Fault {
 }
 
 /// One line about all that is missing: how many files, and about how many bytes.
-fn about_missing(scene: &Scene, inventory: &Inventory) -> Fault {
+fn about_missing(job: &Job, inventory: &Inventory) -> Fault {
     let missing = inventory.missing.len();
-    let expected = format!("{} files of sweeps", missing + inventory.present.len());
+    let expected = format!("all {}", missing + inventory.present.len());
     let found = format!("{missing} missing, about {} bytes", inventory.missing_bytes());
-    Fault::new("missing-files", &scene.name, expected, found).hint(
-        "--allow-missing-sweeps labels without them, --on-error skip without their keyframes too",
-    )
+    let fault = Fault::new("missing-files", "files of points and labels", expected, found);
+    match (job.skips(), job.args.allow_missing_sweeps) {
+        (true, _) => fault,
+        (false, true) => fault.hint("a keyframe needs its own: --on-error skip leaves it out"),
+        (false, false) => {
+            fault.hint("--allow-missing-sweeps labels without those that no keyframe needs")
+        }
+    }
 }
 
-/// How many keyframes fit into memory at once.
-fn fit(job: &Job, scene: &Scene, bytes: u64) -> Result<(usize, usize), Refused> {
-    let model = MemoryModel::new(bytes / BYTES_A_POINT, &job.opened.rules.spec);
-    model.plan(job.threads, job.args.memory).map_err(|needed| {
-        let limit = job.args.memory.unwrap_or(u64::MAX);
-        let expected = format!("a scene that fits into {limit} bytes");
+/// How many keyframes fit into memory at once: into `--memory`, else into what the machine has left.
+fn fit(job: &Job, scene: &Scene, model: &MemoryModel) -> Result<(usize, usize), Refused> {
+    let limit = job.args.memory.or_else(available_memory_bytes);
+    model.plan(job.threads, limit).map_err(|needed| {
+        let expected = format!("a scene that fits into {} bytes", limit.unwrap_or(u64::MAX));
         let fault = Fault::new("memory", &scene.name, expected, format!("{needed} bytes needed"));
         Refused::Broken(vec![fault.hint("raise --memory, or take a coarser or smaller grid")])
     })
+}
+
+/// Memory that the machine can still give, where the system tells it.
+fn available_memory_bytes() -> Option<u64> {
+    let info = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = info.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
 }
 
 fn scene_record(job: &Job, scene: &Scene) -> SceneRecord {

@@ -66,13 +66,23 @@ fn scene_json(done: &SceneDone) -> Value {
     scene
 }
 
-/// Gives the keyframes that only an earlier manifest knows of what the report beside it tells of them.
-pub(crate) fn recall(finished: &mut Finished, report: &Path) {
-    let Ok(text) = std::fs::read(report) else { return };
-    let Ok(report) = serde_json::from_slice::<Value>(&text) else { return };
-    for ((scene, token), entry) in finished.iter_mut().filter(|(_, entry)| entry.summary.is_null())
-    {
-        entry.summary = report["scenes"][scene.as_str()][LABELLED][token.as_str()].clone();
+/// The report that an earlier run left.
+pub(crate) struct EarlierReport(Value);
+
+impl EarlierReport {
+    /// Reads it; one that is not there or broken tells nothing.
+    pub(crate) fn load(path: &Path) -> Self {
+        let text = std::fs::read(path).unwrap_or_default();
+        Self(serde_json::from_slice(&text).unwrap_or_default())
+    }
+
+    /// Gives the keyframes that only an earlier manifest knows of what this report tells of them.
+    pub(crate) fn recall(&self, finished: &mut Finished) {
+        for ((scene, token), entry) in finished.iter_mut() {
+            if entry.summary.is_null() {
+                entry.summary = self.0["scenes"][scene.as_str()][LABELLED][token.as_str()].clone();
+            }
+        }
     }
 }
 

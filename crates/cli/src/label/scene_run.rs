@@ -136,23 +136,22 @@ impl SceneRun<'_> {
     fn finish(&self, keyframe: &Keyframe, bench: &Bench) -> Result<(), Fault> {
         let (mut clock, (_, shards)) = (StageClock::start(), self.planned.at_once);
         let rules = &self.job.opened.rules;
-        let labels =
+        let labelled =
             label_keyframe(bench.scene, bench.aggregated, keyframe, rules, shards, |stage| {
                 clock.enter(stage);
             });
         let entry = JournalEntry {
             scene: bench.scene.name.clone(),
             keyframe: keyframe.token.clone(),
-            files: self.write(keyframe, &labels)?,
-            summary: bench.summary(&labels),
+            files: self.write(keyframe, &labelled.labels)?,
+            summary: bench.summary(&labelled.labels),
         };
         bench.journal.lock().expect("no worker panicked").append(&entry)?;
-        let rays = bench.aggregated.point_count() as u64;
         let mut done = bench.done.lock().expect("no worker panicked");
         done.keep(&entry);
-        done.tally.rays += rays;
+        done.tally.rays += labelled.rays;
         done.tally.times.add(&clock.stop());
-        self.progress.keyframe(&entry.scene, &entry.keyframe, rays);
+        self.progress.keyframe(&entry.scene, &entry.keyframe, labelled.rays);
         Ok(())
     }
 

@@ -43,7 +43,7 @@ pub(crate) struct Tally {
     pub(crate) points: u64,
     /// Points dropped, by reason.
     pub(crate) dropped: DropCounts,
-    /// Rays cast: points times keyframes labelled by this run.
+    /// Rays of the keyframes labelled by this run.
     pub(crate) rays: u64,
     /// Annotated boxes at the time of a sweep that hold no point of it.
     pub(crate) boxes_without_points: Vec<EmptyBox>,

@@ -75,7 +75,10 @@ impl<'a> Captures<'a> {
 
 fn check_file(row: &Row<SampleData>) -> Result<(), Fault> {
     match name_defect(&row.filename) {
-        Some(defect) => Err(row.fault("file-name", "a path below the log's root", defect)),
+        Some(defect) => {
+            let found = format!("`{}`, {defect}", row.filename);
+            Err(row.fault("file-name", "a path below the log's root", found))
+        }
         None => Ok(()),
     }
 }

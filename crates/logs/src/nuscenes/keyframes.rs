@@ -46,7 +46,7 @@ pub(super) fn reference_lidar(
     let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
     settings.choose_lidar(&names).ok_or_else(|| {
         let expected = format!("sweeps of the reference lidar `{}`", settings.reference_lidar);
-        let found = format!("sweeps of {} lidars: {}", names.len(), names.join(", "));
+        let found = if names.is_empty() { "no sweeps".into() } else { names.join(", ") };
         Fault::new("reference-lidar", SampleData::FILE, expected, found).record(scene)
     })
 }
@@ -141,7 +141,9 @@ fn moment<'a>(
     let token = sample.unwrap_or(&sweep.row.token).to_string();
     match is_folder_name(&token) {
         true => Ok(Moment { token, sweep: place, time: sweep.time, sample }),
-        false => Err(token_fault(sweep, "letters, digits, `.`, `_` and `-`", &token)),
+        false => {
+            Err(token_fault(sweep, "A-Z, a-z, 0-9, `.`, `_` and `-`, the first no dot", &token))
+        }
     }
 }
 

@@ -78,8 +78,10 @@ fn read_one<T: LabelTable>(folder: &Path) -> Result<LabelFiles, Fault> {
         |_| Ok(true),
         |row: Row<T>| {
             let (sweep, file) = row.sweep_and_file();
-            let defect = name_defect(file)
-                .map(|defect| row.fault("file-name", "a path below the log's root", defect));
+            let defect = name_defect(file).map(|defect| {
+                let found = format!("`{file}`, {defect}");
+                row.fault("file-name", "a path below the log's root", found)
+            });
             let labels = LabelFile { encoding: T::ENCODING, file: file.to_owned(), defect };
             match files.insert(sweep.clone(), labels) {
                 Some(_) => {

@@ -108,7 +108,8 @@ fn read_mask(
         Fault::new("camera-mask", file, &expected, found).record(calibration.token.to_string())
     };
     if let Some(defect) = name_defect(file) {
-        return Err(calibration.fault("file-name", "a path below the log's root", defect));
+        let found = format!("`{file}`, {defect}");
+        return Err(calibration.fault("file-name", "a path below the log's root", found));
     }
     let bytes = read_file(root, file)?;
     let pixels = decode(bytes, width, height).map_err(fault)?;

@@ -129,7 +129,7 @@ fn check_wanted(rows: &[Row<SceneRow>], wanted: Option<&BTreeSet<String>>) -> Re
 }
 
 /// What the name of an output folder is made of.
-const PLAIN_NAME: &str = "a name of letters, digits, `.`, `_` and `-`";
+const PLAIN_NAME: &str = "a name of A-Z, a-z, 0-9, `.`, `_` and `-`, the first no dot";
 
 fn name_fault(row: &Row<SceneRow>, expected: &str) -> Fault {
     row.fault("scene-name", expected, format!("`{}`", row.name))

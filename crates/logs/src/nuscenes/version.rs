@@ -43,7 +43,8 @@ pub(super) fn version_folder(root: &Path, version: Option<&str>) -> Result<PathB
 pub(super) fn table_files(root: &Path, folder: &Path) -> Result<Vec<String>, Fault> {
     let place = folder.to_string_lossy();
     let entries = fs::read_dir(folder).map_err(|error| unreadable(&place, &error))?;
-    let is_table = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
+    let is_json = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
+    let is_table = |path: &PathBuf| is_json(path) && path.is_file();
     let mut files: Vec<String> = entries
         .flatten()
         .map(|entry| entry.path())

@@ -95,7 +95,7 @@ fn section_2_a_reference_lidar_that_is_not_there_is_a_fault() {
     assert_eq!(
         log.refusal(),
         "sample_data.json (scene-0001): expected sweeps of the reference lidar `LIDAR_BACK`, \
-         found sweeps of 1 lidars: LIDAR_TOP"
+         found LIDAR_TOP"
     );
 }
 
@@ -251,7 +251,7 @@ fn fault_36_files_outside_the_root_and_unsafe_names_are_refused() {
     for name in ["../../x", "..", "", "a b", "a/b"] {
         let text = refusal("scene", "scene-a", "name", name);
         assert!(text.starts_with("scene.json (scene-a, at byte"), "{text}");
-        assert!(text.contains("a name of letters"), "{text}");
+        assert!(text.contains("a name of A-Z"), "{text}");
     }
 }
 

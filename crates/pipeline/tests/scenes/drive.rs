@@ -71,7 +71,7 @@ impl Drive {
         let aggregated = self.aggregate(rules, is_read);
         let keyframes = self.scene.keyframes.iter();
         keyframes
-            .map(|k| label_keyframe(&self.scene, &aggregated, k, rules, shards, |_| ()))
+            .map(|k| label_keyframe(&self.scene, &aggregated, k, rules, shards, |_| ()).labels)
             .collect()
     }
 }
