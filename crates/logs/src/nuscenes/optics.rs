@@ -12,7 +12,7 @@ use occlabel_core::{Camera, Fault};
 use super::captures::Capture;
 use super::files::{name_defect, read_file};
 use super::number::{Number, plain};
-use super::rows::{CalibratedSensor, OcamFields};
+use super::rows::{Affine, CalibratedSensor, OcamFields};
 use super::table::Row;
 
 /// The camera that took an image: model, size and body mask.
@@ -41,8 +41,11 @@ fn model_of(calibration: &Row<CalibratedSensor>) -> Result<CameraModel, Fault> {
     model_named(name, calibration).map_err(refuse)
 }
 
+/// What an absent `camera_distortion` means.
+const NO_DISTORTION: [f64; 4] = [0.0; 4];
+
 fn model_named(name: &str, calibration: &CalibratedSensor) -> Result<CameraModel, Defect> {
-    let distortion = reals(calibration.camera_distortion.as_deref().unwrap_or_default());
+    let distortion = calibration.camera_distortion.as_deref().map_or(NO_DISTORTION.into(), reals);
     let intrinsics = || intrinsics(&calibration.camera_intrinsic);
     Ok(match name {
         "pinhole" if distortion.iter().any(|coefficient| *coefficient != 0.0) => {
@@ -87,9 +90,17 @@ fn intrinsics(rows: &[Vec<Number>]) -> Result<Intrinsics, Defect> {
 
 fn ocam(fields: Option<&OcamFields>) -> Result<Ocam, Defect> {
     let Some(fields) = fields else { return Err("no field `ocam`".into()) };
-    let (poly, centre, affine) =
-        (reals(&fields.poly), plain(&fields.centre), plain(&fields.affine));
-    Ok(Ocam::new(&poly, centre, affine, fields.max_angle_rad.0)?)
+    let (poly, centre) = (reals(&fields.poly), plain(&fields.centre));
+    Ok(Ocam::new(&poly, centre, affine(&fields.affine)?, fields.max_angle_rad.0)?)
+}
+
+/// c, d, e.
+fn affine(affine: &Affine) -> Result<[f64; 3], Defect> {
+    match affine {
+        Affine::Short(numbers) => Ok(plain(numbers)),
+        Affine::Matrix([[c, d], [e, one]]) if one.0 == 1.0 => Ok([c.0, d.0, e.0]),
+        Affine::Matrix(_) => Err("an `affine` matrix that does not end in 1".into()),
+    }
 }
 
 fn reals(numbers: &[Number]) -> Vec<f64> {

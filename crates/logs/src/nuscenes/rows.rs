@@ -104,9 +104,18 @@ pub(super) struct OcamFields {
     pub(super) poly: Vec<Number>,
     /// Column and row, pixels.
     pub(super) centre: [Number; 2],
-    /// c, d, e.
-    pub(super) affine: [Number; 3],
+    pub(super) affine: Affine,
     pub(super) max_angle_rad: Number,
+}
+
+/// The affine part of the model: pixel = [c d; e 1] sensor + centre.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Affine {
+    /// c, d, e.
+    Short([Number; 3]),
+    /// The whole matrix, row by row.
+    Matrix([[Number; 2]; 2]),
 }
 
 /// A sensor of the vehicle.

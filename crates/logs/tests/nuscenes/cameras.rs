@@ -115,11 +115,17 @@ fn section_2_each_camera_model_is_read_from_its_optional_fields() {
     assert!(matches!(with("brown-conrady", 5), CameraModel::BrownConrady(_)));
     assert!(matches!(with("kannala-brandt", 4), CameraModel::KannalaBrandt(_)));
     assert!(matches!(with("mei", 5), CameraModel::Mei(_)));
-    let ocam = json!({"camera_model": "ocam", "camera_intrinsic": [], "ocam": {
-        "poly": [-300.0, 0.0, 0.001], "centre": [4.0, 2.0], "affine": [1.0, 0.0, 0.0],
-        "max_angle_rad": 1.6,
-    }});
-    assert!(matches!(model(ocam), CameraModel::Ocam(_)));
+    let plain = |name: &str| model(json!({"camera_model": name}));
+    assert!(matches!(plain("brown-conrady"), CameraModel::BrownConrady(_)), "none is zero");
+    let ocam = |affine: Value| {
+        model(json!({"camera_model": "ocam", "camera_intrinsic": [], "ocam": {
+            "poly": [-300.0, 0.0, 0.001], "centre": [4.0, 2.0], "affine": affine,
+            "max_angle_rad": 1.6,
+        }}))
+    };
+    let short = ocam(json!([1.1, 0.2, 0.3]));
+    assert!(matches!(short, CameraModel::Ocam(_)));
+    assert_eq!(ocam(json!([[1.1, 0.2], [0.3, 1.0]])), short, "the same affine part in full");
 }
 
 #[test]
