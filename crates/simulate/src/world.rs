@@ -1,0 +1,194 @@
+//! A world: everything that is true about a drive.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use nalgebra::Point3;
+use occlabel_core::{Fault, Pose, Timestamp};
+
+use crate::bodies::{Bodies, Body};
+use crate::camera::WorldCamera;
+use crate::check::{each, inside, need, within};
+use crate::ego::Ego;
+use crate::ground::Ground;
+use crate::instant::{Instant, What};
+use crate::lidar::Lidar;
+use crate::mover::Mover;
+use crate::shape::Shape;
+use crate::world_file::{StaticFile, WorldFile, ego_body};
+
+/// A trailer's way is known so long beyond the drive's end, for sweeps that begin in it, seconds.
+const BEYOND_S: f64 = 101.0;
+
+/// A world, read from its file and checked: nothing in it can fail.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// Its name, fit for a file.
+    pub name: String,
+    /// How long the drive lasts from time zero, seconds.
+    pub duration_s: f64,
+    /// What noise and dropout are drawn from.
+    pub seed: u64,
+    /// The name of the taxonomy whose raw names it uses.
+    pub taxonomy: String,
+    /// How many keyframes a second has.
+    pub keyframe_hz: f64,
+    /// The ground.
+    pub ground: Ground,
+    /// The raw point label of each static shape.
+    pub static_classes: Vec<String>,
+    /// The annotated things in byte order of their names.
+    pub movers: Vec<Mover>,
+    /// The recording vehicle.
+    pub ego: Ego,
+    /// The lidars in byte order of their names.
+    pub lidars: Vec<Lidar>,
+    /// The cameras in byte order of their names.
+    pub cameras: Vec<WorldCamera>,
+    pub(crate) standing: Bodies,
+    pub(crate) ego_body: Option<(Arc<Shape>, Pose)>,
+}
+
+impl World {
+    /// A world from the text of its file; `place` is the file's name, for faults.
+    ///
+    /// # Errors
+    /// If the text is no TOML, a key is unknown or missing, or a value impossible: the fault's
+    /// record is the key.
+    pub fn parse(text: &str, place: &str) -> Result<Self, Fault> {
+        let at_key = |key: String, fault: Fault| Fault { place: place.into(), ..fault }.record(key);
+        let file = read(text).map_err(|fault| at_key(fault.place.clone(), fault))?;
+        build(file).map_err(|fault| at_key(fault.place.clone(), fault))
+    }
+
+    /// The world at a time, seconds.
+    pub fn at(&self, time_s: f64) -> Instant<'_> {
+        Instant::new(self, time_s)
+    }
+
+    /// The world at a time of its clock.
+    pub fn at_time(&self, time: Timestamp) -> Instant<'_> {
+        self.at(time.seconds_since(Timestamp(0)))
+    }
+
+    /// The ego's pose at a time, seconds.
+    pub fn world_from_ego(&self, time_s: f64) -> Pose {
+        self.ego.world_from_ego(time_s, &self.ground)
+    }
+
+    /// The raw point label of a part of the world.
+    pub fn class_of(&self, what: What) -> &str {
+        match what {
+            What::Ground(at) => &self.ground.bands[at].class,
+            What::Static(at) => &self.static_classes[at],
+            What::Mover(at) => &self.movers[at].category,
+            What::Ego => self.ego.body.as_ref().map_or("", |body| &body.class),
+        }
+    }
+
+    /// A lidar's place in the list; how many there are if it is none of them.
+    pub(crate) fn lidar_number(&self, name: &str) -> usize {
+        self.lidars.partition_point(|lidar| lidar.name.as_str() < name)
+    }
+}
+
+fn read(text: &str) -> Result<WorldFile, Fault> {
+    let not_toml =
+        |error: toml::de::Error| Fault::new("world", "the file", "TOML", error.message());
+    let document = toml::Deserializer::parse(text).map_err(not_toml)?;
+    serde_path_to_error::deserialize(document).map_err(|error| {
+        let message = error.inner().message().to_owned();
+        Fault::new("world", error.path().to_string(), "a world file's key and value", message)
+    })
+}
+
+fn build(file: WorldFile) -> Result<World, Fault> {
+    named("name", &file.name)?;
+    within("duration_s", file.duration_s, 1e-3, 3600.0)?;
+    within("keyframe_hz", file.keyframe_hz, 0.01, 1000.0)?;
+    inside("ground", file.ground.check())?;
+    inside("ego", file.ego.check())?;
+    let static_classes = file.statics.iter().map(|body| body.class.clone()).collect();
+    let world = World {
+        movers: movers(&file)?,
+        lidars: lidars(&file)?,
+        cameras: cameras(&file)?,
+        standing: standing(file.statics)?,
+        ego_body: inside("ego.body", ego_body(&file.ego))?,
+        name: file.name,
+        duration_s: file.duration_s,
+        seed: file.seed,
+        taxonomy: file.taxonomy,
+        keyframe_hz: file.keyframe_hz,
+        ground: file.ground,
+        static_classes,
+        ego: file.ego,
+    };
+    check_sight(&world).map(|()| world)
+}
+
+fn standing(statics: Vec<StaticFile>) -> Result<Bodies, Fault> {
+    let mut number = 0..;
+    let bodies = each("static", statics, |body| {
+        let shape = Arc::new(inside("shape", body.shape.try_into())?);
+        let pose: Pose = inside("pose", body.pose.try_into())?;
+        Ok(Body::new(shape, pose, What::Static(number.next().unwrap_or_default())))
+    })?;
+    Ok(Bodies::new(bodies))
+}
+
+fn movers(file: &WorldFile) -> Result<Vec<Mover>, Fault> {
+    let count = file.movers.len();
+    need("mover", count <= usize::from(u16::MAX), "at most 65535", count)?;
+    let mut movers: Vec<Mover> = Vec::new();
+    for (at, mover) in file.movers.iter().cloned().enumerate() {
+        let built = mover.build(&movers, file.duration_s + BEYOND_S);
+        movers.push(inside(&format!("mover[{at}]"), built)?);
+    }
+    in_order("mover", movers, |mover| &mover.name)
+}
+
+fn lidars(file: &WorldFile) -> Result<Vec<Lidar>, Fault> {
+    let lidars = each("lidar", file.lidars.iter().cloned(), Lidar::try_from)?;
+    need("lidar", !lidars.is_empty(), "at least one", 0)?;
+    in_order("lidar", lidars, |lidar| &lidar.name)
+}
+
+fn cameras(file: &WorldFile) -> Result<Vec<WorldCamera>, Fault> {
+    let cameras = each("camera", file.cameras.iter().cloned(), WorldCamera::try_from)?;
+    need("camera", cameras.len() <= 16, "at most 16", cameras.len())?;
+    in_order("camera", cameras, |camera| &camera.named.name)
+}
+
+/// A list in byte order of names, each fit for a file and there once.
+fn in_order<T>(
+    list: &str,
+    mut items: Vec<T>,
+    name: impl Fn(&T) -> &String,
+) -> Result<Vec<T>, Fault> {
+    let mut known = BTreeSet::new();
+    for (at, item) in items.iter().enumerate() {
+        let key = format!("{list}[{at}].name");
+        named(&key, name(item))?;
+        need(&key, known.insert(name(item)), "a name of its own", name(item))?;
+    }
+    items.sort_by(|a, b| name(a).cmp(name(b)));
+    Ok(items)
+}
+
+fn named(key: &str, name: &str) -> Result<(), Fault> {
+    let fit = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+    let fits = !name.is_empty() && !name.starts_with('.') && name.chars().all(fit);
+    need(key, fits, "letters, digits, `.`, `_` and `-`", format!("`{name}`"))
+}
+
+/// Refuses a lidar that sits in the ego's own body.
+fn check_sight(world: &World) -> Result<(), Fault> {
+    let Some((shape, ego_from_body)) = &world.ego_body else { return Ok(()) };
+    let body_from_ego = ego_from_body.inverse();
+    let buried = |lidar: &&Lidar| {
+        shape.contains(&(body_from_ego * (lidar.ego_from_lidar * Point3::origin())))
+    };
+    let found = world.lidars.iter().find(buried).map_or("", |lidar| &lidar.name);
+    need("ego.body", found.is_empty(), "a body that holds no lidar", found)
+}
