@@ -119,7 +119,7 @@ impl Scene {
         self.sweeps.iter().any(|sweep| sweep.labelled)
     }
 
-    /// Pose of the reference lidar's frame, its time being the keyframe's.
+    /// The sweep whose pose places a keyframe's grid, and whose time is the keyframe's.
     pub fn reference_sweep(&self, keyframe: &Keyframe) -> &SweepHeader {
         &self.sweeps[keyframe.sweep]
     }

@@ -60,11 +60,6 @@ impl Taxonomy {
             })
             .collect()
     }
-
-    /// How many classes there are.
-    pub fn class_count(&self) -> usize {
-        self.names.len()
-    }
 }
 
 /// A taxonomy as its file says it: names throughout.

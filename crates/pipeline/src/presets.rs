@@ -61,7 +61,7 @@ mod tests {
             let ids = |set: &occlabel_core::ClassSet| -> Vec<u8> {
                 (0..=254).filter(|&id| set.contains(occlabel_core::ClassId(id))).collect()
             };
-            let mut priority: Vec<u8> = (0..taxonomy.class_count() as u8).collect();
+            let mut priority: Vec<u8> = (0..taxonomy.names.len() as u8).collect();
             priority.sort_by_key(|&id| taxonomy.rank[usize::from(id)]);
             let sets = [&taxonomy.things, &taxonomy.movers, &taxonomy.deformable, &taxonomy.flat];
             (sets.map(ids), priority, taxonomy.unknown.map(|class| class.0), taxonomy.free)
