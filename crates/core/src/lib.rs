@@ -32,6 +32,7 @@ mod scene;
 mod taxonomy;
 mod time;
 mod traverse;
+mod truth;
 mod walk;
 
 pub use aggregated::{AggregatedScene, BackgroundSweep, DropCounts, ObjectSweep};
@@ -51,4 +52,5 @@ pub use scene::{
 pub use taxonomy::{Meaning, Taxonomy, TaxonomyError};
 pub use time::Timestamp;
 pub use traverse::{Traverse, traverse};
+pub use truth::VoxelTruth;
 pub use walk::walk;

@@ -27,10 +27,10 @@ impl Clock {
         self.rate_hz
     }
 
-    /// The k-th time and a share of a period.
+    /// The k-th time and a share of a period, to the whole microsecond that log formats keep.
     pub fn tick(&self, k: usize, share: f64) -> Timestamp {
         let seconds = self.offset_s + (k as f64 + share) / self.rate_hz;
-        Timestamp((seconds * 1e9).round() as i64)
+        Timestamp((seconds * 1e6).round() as i64 * 1000)
     }
 
     /// All times before the end of a drive.

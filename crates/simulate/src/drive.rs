@@ -8,7 +8,7 @@ use occlabel_core::{
 
 use crate::check::{each, need};
 use crate::lidar::{Lidar, Return};
-use crate::{What, World};
+use crate::{Instant, What, World};
 
 /// A keyframe has the exposures that are this near in time (labels.md section 2), seconds.
 const EXPOSURE_WITHIN_S: f64 = 0.1;
@@ -109,6 +109,26 @@ impl Drive {
         self.scene.sweeps.binary_search_by(known).ok()
     }
 
+    /// The scene's keyframe of that token. Every log of the drive names its keyframes so that the
+    /// token ends in their time in nanoseconds.
+    pub fn keyframe(&self, token: &str) -> Option<&Keyframe> {
+        let digits =
+            token.rfind(|c: char| !c.is_ascii_digit()).map_or(token, |at| &token[at + 1..]);
+        let time = Timestamp(digits.parse().ok()?);
+        self.scene.keyframes.iter().find(|keyframe| keyframe.time == time)
+    }
+
+    /// When a mover stands where its annotated box says, for a keyframe: seconds.
+    pub fn mover_time_s(&self, keyframe: &Keyframe, _mover: usize) -> f64 {
+        keyframe.time.seconds_since(Timestamp(0))
+    }
+
+    /// The true world of a keyframe: the ego at its time, each mover at [`Self::mover_time_s`].
+    pub fn instant(&self, keyframe: &Keyframe) -> Instant<'_> {
+        let time_s = keyframe.time.seconds_since(Timestamp(0));
+        Instant::new(&self.world, time_s, |mover| self.mover_time_s(keyframe, mover))
+    }
+
     /// What a return from a part of the world is labelled.
     pub fn label_of(&self, what: What) -> PointLabel {
         self.labels.of(what)
@@ -198,7 +218,7 @@ fn keyframes(world: &World, sweeps: &[SweepKey]) -> Result<Vec<Keyframe>, Fault>
         |key: &SweepKey| key.lidar == reference && key.number.is_multiple_of(stride as usize);
     let exposures = exposure_times(world);
     let keyframe = |(sweep, key): (usize, &SweepKey)| Keyframe {
-        token: header(world, key).source_id,
+        token: key.time.0.to_string(),
         time: key.time,
         sweep,
         exposures: exposures_near(world, &exposures, key.time),

@@ -37,12 +37,14 @@ pub struct Instant<'w> {
 }
 
 impl<'w> Instant<'w> {
-    pub(crate) fn new(world: &'w World, time_s: f64) -> Self {
+    /// The world with its ego at one time and each mover at its own, seconds.
+    pub(crate) fn new(world: &'w World, time_s: f64, mover_time_s: impl Fn(usize) -> f64) -> Self {
         let ego = world.ego_body.as_ref().map(|(shape, ego_from_body)| {
             let world_from_body = world.world_from_ego(time_s) * ego_from_body;
             Body::new(shape.clone(), world_from_body, What::Ego)
         });
-        let movers = (0..world.movers.len()).flat_map(|at| mover_bodies(world, at, time_s));
+        let movers =
+            (0..world.movers.len()).flat_map(|at| mover_bodies(world, at, mover_time_s(at)));
         Self { world, moving: Bodies::new(movers.chain(ego).collect()) }
     }
 

@@ -63,7 +63,7 @@ impl World {
 
     /// The world at a time, seconds.
     pub fn at(&self, time_s: f64) -> Instant<'_> {
-        Instant::new(self, time_s)
+        Instant::new(self, time_s, |_| time_s)
     }
 
     /// The world at a time of its clock.

@@ -1,0 +1,32 @@
+//! What is exactly known of a voxel of a simulated drive at a keyframe.
+
+use crate::{ClassId, TrackId};
+
+/// The truth about one voxel, whatever any label says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct VoxelTruth {
+    /// Share of its volume that is solid; above 0 wherever any solid reaches into the voxel.
+    pub solid: f32,
+    /// Whether a surface between solid and air passes through it.
+    pub surface: bool,
+    /// Distance of its centre to the nearest such surface, in voxels (of the shortest edge).
+    pub surface_distance: f32,
+    /// The class that most of its surface has (of its volume, if no surface passes); none if empty.
+    pub class: Option<ClassId>,
+    /// The mover that it belongs to, if its class is that of one.
+    pub instance: Option<TrackId>,
+    /// Rigid velocity of that mover at its centre in the grid frame, metres per second; NaN if the
+    /// mover's next annotation is missing; 0 without a mover.
+    pub flow: [f32; 3],
+    /// Whether it is empty now, but some mover's solid passed through it at the time of another
+    /// sweep.
+    pub swept: bool,
+    /// How many noise-free rays of the logged pattern end in it.
+    pub ends: u32,
+    /// How many rays of a four times denser pattern end in it.
+    pub dense_ends: u32,
+    /// Whether a noise-free ray of the logged pattern passes through it to an end behind it.
+    pub crossed: bool,
+    /// One bit per camera that has a true line of sight to its centre, or into it on that line.
+    pub sight: u16,
+}

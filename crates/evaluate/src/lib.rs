@@ -1,0 +1,1 @@
+//! How right labels are: against an exactly known world, and against held-out sweeps.

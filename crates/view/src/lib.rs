@@ -1,0 +1,1 @@
+//! Pictures of labels, drawn without a display.
