@@ -5,16 +5,19 @@ use std::path::Path;
 use std::sync::Arc;
 
 use occlabel_core::{ClassId, Fault, Taxonomy};
-use occlabel_logs::{NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReaderDefaults};
+use occlabel_logs::{
+    NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults,
+    SceneSource,
+};
 use occlabel_pipeline::{Autos, Config, Rules, parse_taxonomy, preset, shipped_taxonomy};
 
-use crate::args::{ConfigArgs, LogArgs, QuatOrder};
+use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder};
 use crate::exit::Stop;
 use crate::presets::unknown_preset;
 
 /// A log, and what decides its labels.
 pub(crate) struct Opened {
-    pub(crate) source: NuScenesLog,
+    pub(crate) source: Box<dyn SceneSource>,
     /// The preset's name; none if a file was given.
     pub(crate) preset: Option<String>,
     /// Resolved: no `"auto"` left.
@@ -29,17 +32,41 @@ pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
     let (preset, mut config) = read_config(args).map_err(Stop::usage)?;
     check_input(log).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
-    let defaults = NuScenesLog::format_defaults(&log.input, log.version.as_deref());
-    let autos = autos(defaults.map_err(usage_or_failed)?);
+    let autos = autos(format_defaults(log).map_err(usage_or_failed)?);
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
-    let options = NuScenesOptions {
-        version: log.version.clone(),
+    let options = ReadOptions {
         scenes,
         unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?,
         taxonomy,
         keyframes: config.keyframes.clone(),
+    };
+    let source = open_format(log, options).map_err(usage_or_failed)?;
+    Ok(Opened { source, preset, config, taxonomy_hash, rules })
+}
+
+/// Opens a log by its format.
+fn open_format(log: &LogArgs, read: ReadOptions) -> Result<Box<dyn SceneSource>, Fault> {
+    match log.format {
+        Format::Nuscenes => {
+            let options = nuscenes_options(log, read);
+            NuScenesLog::open(&log.input, options).map(|log| Box::new(log) as _)
+        }
+    }
+}
+
+/// What the format itself says where the configuration says `"auto"`.
+fn format_defaults(log: &LogArgs) -> Result<ReaderDefaults, Fault> {
+    match log.format {
+        Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref()),
+    }
+}
+
+fn nuscenes_options(log: &LogArgs, read: ReadOptions) -> NuScenesOptions {
+    NuScenesOptions {
+        read,
+        version: log.version.clone(),
         quaternion_order: match log.quat_order {
             QuatOrder::Wxyz => QuaternionOrder::Wxyz,
             QuatOrder::Xyzw => QuaternionOrder::Xyzw,
@@ -49,9 +76,7 @@ pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
             Some(_) => Some(PointColumns::Five),
             None => None,
         },
-    };
-    let source = NuScenesLog::open(&log.input, options).map_err(usage_or_failed)?;
-    Ok(Opened { source, preset, config, taxonomy_hash, rules })
+    }
 }
 
 /// What the user named wrongly is a matter of usage; what the log holds wrongly is not.

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use occlabel_core::{Scene, printable};
-use occlabel_logs::SceneSource;
 
 use crate::args::InspectArgs;
 use crate::console::Console;

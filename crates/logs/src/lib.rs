@@ -20,9 +20,12 @@
 //! [`Fault`]: occlabel_core::Fault
 
 mod inventory;
+mod keyframes;
 mod nuscenes;
+mod options;
 mod source;
 
 pub use inventory::{Inventory, MissingFile};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder};
+pub use options::ReadOptions;
 pub use source::{ReaderDefaults, SceneSource, SweepPoints};

@@ -4,7 +4,6 @@
 use std::collections::BTreeSet;
 
 use occlabel_core::Fault;
-use occlabel_logs::SceneSource;
 
 use crate::console::Console;
 use crate::exit::Stop;

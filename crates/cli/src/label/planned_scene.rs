@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use occlabel_core::{BoxTrack, Fault, Keyframe, Scene};
 use occlabel_labels::{SceneRecord, TrackRecord};
-use occlabel_logs::{Inventory, MissingFile, SceneSource};
+use occlabel_logs::{Inventory, MissingFile};
 use occlabel_pipeline::MemoryModel;
 
 use crate::label::Job;
@@ -61,7 +61,7 @@ impl PlannedScene {
             findings.warn(job.console, name, &no_labels(job));
         }
         lose_refused(job, &scene, findings)?;
-        let inventory = Inventory::take(&job.opened.source, &job.args.log.input, &scene);
+        let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
         let points = inventory.present_bytes() / BYTES_A_POINT;
         let model = MemoryModel::new(points, &job.opened.rules.spec);

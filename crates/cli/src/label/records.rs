@@ -8,7 +8,6 @@ use occlabel_labels::{
     ClassRecord, GridRecord, InputMark, InputRecord, JournalEntry, Manifest, Program, RunRecord,
     SceneRecord, TaxonomyRecord, inputs_hash,
 };
-use occlabel_logs::SceneSource;
 use occlabel_pipeline::{Config, GridFrame};
 use serde_json::Value;
 

@@ -7,7 +7,6 @@ use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, 
 use occlabel_labels::{
     FileRecord, Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz,
 };
-use occlabel_logs::SceneSource;
 use occlabel_pipeline::{aggregate_scene, label_keyframe};
 use serde_json::Value;
 

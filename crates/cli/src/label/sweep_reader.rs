@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use occlabel_core::{Fault, Keyframe, PointCloud, PointLabel, Scene, SweepHeader};
-use occlabel_logs::SceneSource;
 
 use crate::label::Job;
 use crate::label::findings::Findings;

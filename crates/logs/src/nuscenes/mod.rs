@@ -29,15 +29,12 @@ mod token;
 mod tracks;
 mod version;
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use occlabel_core::{
-    ClassId, Fault, KeyframeSettings, KeyframeSource, Scene, SweepHeader, Taxonomy,
-};
+use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, SweepHeader};
 
-use crate::{ReaderDefaults, SceneSource, SweepPoints};
+use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
 pub use points::PointColumns;
 pub use pose::QuaternionOrder;
@@ -53,16 +50,10 @@ const EGO_BOX_M: ([f64; 3], [f64; 3]) = ([-1.2, -1.1, -0.3], [3.7, 1.1, 2.2]);
 /// How to read a nuScenes log.
 #[derive(Clone, Debug)]
 pub struct NuScenesOptions {
+    /// What every reader is asked for.
+    pub read: ReadOptions,
     /// The folder of the tables, such as `v1.0-mini`; `None`: the only one there is.
     pub version: Option<String>,
-    /// Names of the wanted scenes; `None`: all.
-    pub scenes: Option<BTreeSet<String>>,
-    /// What point labels and box categories mean.
-    pub taxonomy: Arc<Taxonomy>,
-    /// Which moments become keyframes.
-    pub keyframes: KeyframeSettings,
-    /// The class of labels and categories that the taxonomy does not name; `None` refuses them.
-    pub unknown_as: Option<ClassId>,
     /// How quaternions stand in the tables.
     pub quaternion_order: QuaternionOrder,
     /// Numbers a point; `None`: five, checked by the look of the fifth.
@@ -89,7 +80,7 @@ impl NuScenesLog {
     pub fn open(root: &Path, options: NuScenesOptions) -> Result<Self, Fault> {
         let folder = version::version_folder(root, options.version.as_deref())?;
         let defaults = defaults(&folder)?;
-        let tables = Tables::read(&folder, options.scenes.as_ref())?;
+        let tables = Tables::read(&folder, options.read.scenes.as_ref())?;
         let table_files = version::table_files(root, &folder)?;
         Ok(Self { root: root.to_owned(), options, tables, defaults, table_files })
     }
@@ -107,16 +98,6 @@ impl NuScenesLog {
     fn label_file(&self, sweep: &SweepHeader) -> Option<&LabelFile> {
         let token = Token::from(sweep.source_id.as_str());
         self.tables.labels.get(&token).filter(|_| sweep.labelled)
-    }
-
-    /// The fault of something that the taxonomy does not name: a warning if a class stands in for it.
-    fn unknown(&self, fault: Fault) -> Result<Fault, Fault> {
-        let Some(class) = self.options.unknown_as else {
-            return Err(fault.hint("`--unknown-as CLASS` gives it a class"));
-        };
-        let name = self.options.taxonomy.names.get(class.index());
-        let taken_as = name.map_or_else(|| class.0.to_string(), |name| format!("`{name}`"));
-        Ok(Fault { found: format!("{}, taken as {taken_as}", fault.found), ..fault })
     }
 }
 

@@ -20,7 +20,7 @@ impl<'a> RawLabels<'a> {
     /// # Errors
     /// If a category has no `index`, or that of another.
     pub(super) fn of_log(log: &'a NuScenesLog) -> Result<Self, Fault> {
-        let taxonomy = &log.options.taxonomy;
+        let taxonomy = &log.options.read.taxonomy;
         let mut rows: Vec<_> = log.tables.categories.values().collect();
         rows.sort_by_key(|row| row.offset);
         let mut classes = BTreeMap::new();

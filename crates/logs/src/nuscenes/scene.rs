@@ -18,7 +18,7 @@ pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, 
     if let Some(fault) = &rows.name_fault {
         return Err(fault.clone());
     }
-    let (settings, mut notes) = (&log.options.keyframes, Notes::default());
+    let (settings, mut notes) = (&log.options.read.keyframes, Notes::default());
     let captures = Captures::of_scene(&log.tables, rows)?;
     report_jumps(&captures.lidars, &mut notes);
     let sweeps = without_copies(&captures.lidars, &log.root, &mut notes);

@@ -62,12 +62,12 @@ fn read_labels(
     let raw = read_raw(log, file, count)?;
     let unknown = classes.unknown(&raw).map(|found| {
         let expected = "raw labels that category.json and the taxonomy name";
-        log.unknown(Fault::new("unknown-label", &file.file, expected, found))
+        log.options.read.unknown(Fault::new("unknown-label", &file.file, expected, found))
     });
     let label = |raw: &u16| match classes.meaning(*raw) {
         Some(Meaning::Class(class)) => PointLabel::Class(class),
         Some(Meaning::Ignore) => PointLabel::Ignored,
-        None => log.options.unknown_as.map_or(PointLabel::Unlabelled, PointLabel::Class),
+        None => log.options.read.unknown_as.map_or(PointLabel::Unlabelled, PointLabel::Class),
     };
     Ok((raw.iter().map(label).collect(), unknown.transpose()?))
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 
 use nalgebra::Vector3;
-use occlabel_core::{Box3, BoxTrack, Fault, Loss, Meaning, Timestamp, TrackId};
+use occlabel_core::{Box3, BoxTrack, Fault, Loss, Timestamp, TrackId};
 
 use super::NuScenesLog;
 use super::keyframes::KeySweeps;
@@ -38,7 +38,7 @@ pub(super) fn scene_tracks(
     for (source_id, instance) in instances {
         let id = TrackId(track_number(tracks.len() + 1, &rows.name)?);
         let category = instance.category.to_owned();
-        let Some(meaning) = meaning_of(log, &category) else { continue };
+        let Some(meaning) = log.options.read.box_meaning(&category) else { continue };
         let boxes = in_order(instance.boxes)?;
         tracks.push(BoxTrack { id, source_id, category, meaning, boxes });
     }
@@ -105,12 +105,6 @@ fn track_number(number: usize, scene: &str) -> Result<u16, Fault> {
     })
 }
 
-/// What a category means; `unknown_as` stands in for what the taxonomy does not name.
-fn meaning_of(log: &NuScenesLog, category: &str) -> Option<Meaning> {
-    let known = log.options.taxonomy.boxes.get(category).copied();
-    known.or(log.options.unknown_as.map(Meaning::Class))
-}
-
 /// Refuses or notes the categories that the taxonomy does not name, with how many boxes are theirs.
 fn check_categories(
     log: &NuScenesLog,
@@ -119,7 +113,8 @@ fn check_categories(
     notes: &mut Notes,
 ) -> Result<(), Fault> {
     let mut unknown: BTreeMap<&str, usize> = BTreeMap::new();
-    let is_unknown = |track: &&Boxes<'_>| !log.options.taxonomy.boxes.contains_key(track.category);
+    let is_unknown =
+        |track: &&Boxes<'_>| !log.options.read.taxonomy.boxes.contains_key(track.category);
     for track in instances.values().filter(is_unknown) {
         *unknown.entry(track.category).or_default() += track.boxes.len();
     }
@@ -129,6 +124,6 @@ fn check_categories(
     let list = |(name, count): (&&str, &usize)| format!("`{name}` of {count} boxes");
     let found = unknown.iter().map(list).collect::<Vec<_>>().join(", ");
     let fault = Fault::new("unknown-category", Category::FILE, "categories of the taxonomy", found);
-    notes.warn(log.unknown(fault.record(scene))?);
+    notes.warn(log.options.read.unknown(fault.record(scene))?);
     Ok(())
 }

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use occlabel_core::{KeyframeSettings, KeyframeSource};
-use occlabel_logs::{Inventory, NuScenesLog, NuScenesOptions, QuaternionOrder, SceneSource};
+use occlabel_logs::{
+    Inventory, NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource,
+};
 
 use crate::tiny_log::{CAR, taxonomy};
 
@@ -23,15 +25,17 @@ fn a_recorded_drive_is_read_as_its_makers_counted_it() {
         return;
     };
     let options = NuScenesOptions {
-        version: None,
-        scenes: None,
-        taxonomy: Arc::new(taxonomy()),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
+        read: ReadOptions {
+            scenes: None,
+            taxonomy: Arc::new(taxonomy()),
+            keyframes: KeyframeSettings {
+                source: KeyframeSource::Annotated,
+                stride: 1,
+                reference_lidar: "auto".into(),
+            },
+            unknown_as: Some(CAR),
         },
-        unknown_as: Some(CAR),
+        version: None,
         quaternion_order: QuaternionOrder::Wxyz,
         columns: None,
     };

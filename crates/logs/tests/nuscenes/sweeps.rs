@@ -160,7 +160,7 @@ fn fault_26_an_unknown_raw_label_is_told_with_its_count_and_file() {
     let message = read(&log).unwrap_err();
     assert!(message.starts_with("lidarseg/l0.bin (scene-0001, sweep l0)"), "{message}");
     assert!(message.contains("90 (no category) of 2 points"), "{message}");
-    log.options = |options| options.unknown_as = Some(ROAD);
+    log.options = |options| options.read.unknown_as = Some(ROAD);
     let sweep = read(&log).unwrap();
     assert_eq!(sweep.cloud.labels, [PointLabel::Class(ROAD); 2]);
     assert_eq!(sweep.warnings[0].rule, "unknown-label");

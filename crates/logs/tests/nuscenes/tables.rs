@@ -32,11 +32,11 @@ fn only_wanted_scenes_are_read_and_an_unknown_one_tells_the_nearest() {
     log.copy("scene", "scene-a", &[("token", json!("scene-b")), ("name", json!("scene-0002"))]);
     let names = log.open().unwrap().log.scene_names();
     assert_eq!(names, ["scene-0001", "scene-0002"]);
-    log.options = |options| options.scenes = Some(["scene-0002".into()].into());
+    log.options = |options| options.read.scenes = Some(["scene-0002".into()].into());
     let open = log.open().unwrap();
     assert_eq!(open.log.scene_names(), ["scene-0002"]);
     assert_eq!(open.log.load("scene-0001").unwrap_err().rule, "scene-unknown");
-    log.options = |options| options.scenes = Some(["scene-0020".into()].into());
+    log.options = |options| options.read.scenes = Some(["scene-0020".into()].into());
     let refusal = log.refusal();
     assert!(refusal.contains("there is `scene-0001`, `scene-0002`"), "{refusal}");
 }
@@ -52,7 +52,7 @@ fn rows_of_unwanted_scenes_cost_nothing_and_harm_nothing() {
         &[("token", json!("ab")), ("sample_token", json!("sb")), ("size", json!("no size"))],
     );
     assert!(log.refusal().contains("no size"));
-    log.options = |options| options.scenes = Some(["scene-0001".into()].into());
+    log.options = |options| options.read.scenes = Some(["scene-0001".into()].into());
     assert_eq!(log.scene().tracks[0].boxes.len(), 2);
 }
 

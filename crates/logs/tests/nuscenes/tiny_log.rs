@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use occlabel_core::{ClassId, Fault, KeyframeSettings, KeyframeSource, Scene, Taxonomy};
-use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, SceneSource};
+use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -81,11 +81,13 @@ impl TinyLog {
     /// Opens a log that is written already.
     pub(crate) fn open_in(&self, root: &Path) -> Result<NuScenesLog, Fault> {
         let mut options = NuScenesOptions {
+            read: ReadOptions {
+                scenes: None,
+                taxonomy: Arc::new(taxonomy()),
+                keyframes: self.keyframes.clone(),
+                unknown_as: None,
+            },
             version: None,
-            scenes: None,
-            taxonomy: Arc::new(taxonomy()),
-            keyframes: self.keyframes.clone(),
-            unknown_as: None,
             quaternion_order: QuaternionOrder::Wxyz,
             columns: None,
         };

@@ -96,7 +96,7 @@ fn fault_26_an_unknown_category_is_told_with_its_count() {
     let refusal = log.refusal();
     assert!(refusal.contains("(scene-0001)") && refusal.contains("`vehicle.ufo` of 2 boxes"));
     assert!(refusal.contains("--unknown-as"), "{refusal}");
-    log.options = |options| options.unknown_as = Some(ROAD);
+    log.options = |options| options.read.unknown_as = Some(ROAD);
     let scene = log.scene();
     assert_eq!(scene.tracks[0].class(), Some(ROAD));
     assert!(scene.warnings[0].found.ends_with("taken as `road`"), "{}", scene.warnings[0]);

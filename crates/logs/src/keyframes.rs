@@ -1,0 +1,58 @@
+//! Keyframes of logs that name none of their own (labels.md section 2).
+
+use occlabel_core::{
+    Exposure, Fault, Keyframe, KeyframeSettings, KeyframeSource, SweepHeader, Timestamp,
+};
+
+/// A keyframe has the exposures that are this near in time, seconds.
+const EXPOSURE_WITHIN_S: f64 = 0.1;
+
+/// The keyframes of a scene, their tokens the sweeps' times in nanoseconds.
+///
+/// `is_annotated` tells the sweeps that the format annotates; where there is none, all are taken.
+/// `exposures` holds, for each camera, its exposures in order of time.
+///
+/// # Errors
+/// If the scene has no sweep of the wanted lidar.
+#[allow(dead_code)] // The readers to come use it.
+pub(crate) fn keyframes(
+    settings: &KeyframeSettings,
+    scene: &str,
+    sweeps: &[SweepHeader],
+    is_annotated: impl Fn(&SweepHeader) -> bool,
+    exposures: &[Vec<Exposure>],
+) -> Result<Vec<Keyframe>, Fault> {
+    let reference = reference_lidar(settings, scene, sweeps)?;
+    let all = settings.source == KeyframeSource::Sweeps || !sweeps.iter().any(&is_annotated);
+    let is_chosen = |sweep: &SweepHeader| sweep.lidar == reference && (all || is_annotated(sweep));
+    let chosen = sweeps.iter().enumerate().filter(|(_, sweep)| is_chosen(sweep));
+    let keyframe = |(place, sweep): (usize, &SweepHeader)| Keyframe {
+        token: sweep.time.0.to_string(),
+        time: sweep.time,
+        sweep: place,
+        exposures: exposures.iter().filter_map(|camera| nearest(camera, sweep.time)).collect(),
+    };
+    Ok(chosen.step_by(settings.stride.max(1)).map(keyframe).collect())
+}
+
+fn reference_lidar(
+    settings: &KeyframeSettings,
+    scene: &str,
+    sweeps: &[SweepHeader],
+) -> Result<String, Fault> {
+    let mut names: Vec<String> = sweeps.iter().map(|sweep| sweep.lidar.clone()).collect();
+    names.sort_unstable();
+    names.dedup();
+    settings.choose_lidar(&names).ok_or_else(|| {
+        let expected = format!("sweeps of the reference lidar `{}`", settings.reference_lidar);
+        let found = if names.is_empty() { "no sweeps".into() } else { names.join(", ") };
+        Fault::new("reference-lidar", scene, expected, found)
+    })
+}
+
+/// The exposure nearest to a time, the earlier on ties, if it is near enough.
+fn nearest(exposures: &[Exposure], time: Timestamp) -> Option<Exposure> {
+    let apart = |exposure: &&Exposure| exposure.time.seconds_apart(time);
+    let nearest = exposures.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+    (apart(&nearest) <= EXPOSURE_WITHIN_S).then(|| nearest.clone())
+}
