@@ -91,6 +91,8 @@ fn name(ring: &RingQuality) -> String {
 
 fn number(value: Option<Value>) -> String {
     match value.and_then(|value| value.value) {
+        // What rounds to zero has no sign.
+        Some(value) if value.abs() < 5e-5 => format!("{:>8.4}", 0.0),
         Some(value) => format!("{value:>8.4}"),
         None => format!("{:>8}", "-"),
     }
