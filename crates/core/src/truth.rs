@@ -11,8 +11,13 @@ pub struct VoxelTruth {
     pub surface: bool,
     /// Distance of its centre to the nearest such surface, in voxels (of the shortest edge).
     pub surface_distance: f32,
+    /// Distance of its nearest point to the nearest solid, in voxels (of the shortest edge): 0 where
+    /// a solid reaches into it; none if that is farther than one voxel, or was not measured.
+    pub clearance: Option<f32>,
     /// The class that most of its surface has (of its volume, if no surface passes); none if empty.
     pub class: Option<ClassId>,
+    /// One bit per class id below 32: the classes whose surfaces pass through it.
+    pub classes: u32,
     /// The mover that it belongs to, if its class is that of one.
     pub instance: Option<TrackId>,
     /// Rigid velocity of that mover at its centre in the grid frame, metres per second; NaN if the
