@@ -16,9 +16,9 @@ const BOUNDS_SLACK_M: f64 = 1e-6;
 /// A shape at a pose.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
-    shape: Arc<Shape>,
-    world_from_shape: Pose,
-    what: What,
+    pub(crate) shape: Arc<Shape>,
+    pub(crate) world_from_shape: Pose,
+    pub(crate) what: What,
 }
 
 /// Bodies, found by where they are.
@@ -58,6 +58,11 @@ impl Bodies {
     pub(crate) fn new(bodies: Vec<Body>) -> Self {
         let bounds: Vec<Aabb> = bodies.iter().map(Body::bounds).collect();
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds), bodies }
+    }
+
+    /// All of them, in the order they were given.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Body> {
+        self.bodies.iter()
     }
 
     /// The first body on a ray, at most `max_m` away.

@@ -134,6 +134,11 @@ impl Drive {
         self.labels.of(what)
     }
 
+    /// The lidar of a sweep of the scene, and the how many-th of its sweeps it is.
+    pub(crate) fn taken_by(&self, sweep: usize) -> (&Lidar, usize) {
+        (self.lidar(sweep), self.sweeps[sweep].number)
+    }
+
     fn lidar(&self, sweep: usize) -> &Lidar {
         &self.world.lidars[self.sweeps[sweep].lidar]
     }

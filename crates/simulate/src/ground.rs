@@ -59,18 +59,19 @@ fn endless() -> f64 {
 
 /// A piece of the surface: `z = level_m + slope . (x, y)`.
 #[derive(Clone, Copy)]
-struct Plane {
+pub(crate) struct Plane {
     level_m: f64,
     slope: [f64; 2],
 }
 
 impl Plane {
     /// How far a point is above it, along z.
-    fn gap_m(&self, p: &Point3<f64>) -> f64 {
+    pub(crate) fn gap_m(&self, p: &Point3<f64>) -> f64 {
         p.z - (self.level_m + self.slope[0] * p.x + self.slope[1] * p.y)
     }
 
-    fn normal(&self) -> Vector3<f64> {
+    /// Upwards.
+    pub(crate) fn normal(&self) -> Vector3<f64> {
         Vector3::new(-self.slope[0], -self.slope[1], 1.0).normalize()
     }
 }
@@ -90,6 +91,23 @@ impl Ground {
     pub fn contains(&self, p: &Point3<f64>) -> Option<usize> {
         let band = self.band(p.y);
         (self.plane(p.x, band).gap_m(p) <= 0.0).then_some(band)
+    }
+
+    /// The band and the plane over or under which a point is.
+    pub(crate) fn piece(&self, p: &Point3<f64>) -> (usize, Plane) {
+        let band = self.band(p.y);
+        (band, self.plane(p.x, band))
+    }
+
+    /// How far, on the map, the border of that piece is.
+    pub(crate) fn border_m(&self, p: &Point3<f64>) -> f64 {
+        let band = self.bands.partition_point(|band| band.until_y_m <= p.y);
+        let fold = self.profile_m.partition_point(|point| point[0] <= p.x);
+        let kerbs = [band.checked_sub(1), Some(band)]
+            .map(|at| at.and_then(|at| self.bands.get(at)).map(|band| band.until_y_m - p.y));
+        let folds = [fold.checked_sub(1), Some(fold)]
+            .map(|at| at.and_then(|at| self.profile_m.get(at)).map(|point| point[0] - p.x));
+        kerbs.into_iter().chain(folds).flatten().map(f64::abs).fold(f64::INFINITY, f64::min)
     }
 
     /// Height of the ground at a place, without what bands add, metres.
@@ -129,7 +147,8 @@ impl Ground {
         self.bands.partition_point(|band| band.until_y_m <= y_m).min(self.bands.len() - 1)
     }
 
-    fn plane(&self, x_m: f64, band: usize) -> Plane {
+    /// The plane of a band over x.
+    pub(crate) fn plane(&self, x_m: f64, band: usize) -> Plane {
         self.plane_of(x_m, self.bands[band].raise_m)
     }
 

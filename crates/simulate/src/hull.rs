@@ -2,9 +2,14 @@
 
 use nalgebra::{Point3, Vector3};
 use occlabel_core::Fault;
+use parry3d_f64::math::Vector;
+use parry3d_f64::shape::{SupportMap, TriMesh};
+use parry3d_f64::transformation::try_convex_hull;
 
 use crate::check::{metres, need};
 use crate::clip::Clip;
+use crate::convert::{from_parry, to_parry};
+use crate::nearest::Nearest;
 use crate::{Impact, Ray};
 
 /// A point this far beyond a plane still counts as on it, metres.
@@ -17,6 +22,7 @@ const MOST_POINTS: usize = 64;
 pub(crate) struct Hull {
     points: Vec<Point3<f64>>,
     faces: Vec<Face>,
+    surface: TriMesh,
 }
 
 /// All that lies in the solid has `normal * p <= reach_m`.
@@ -37,7 +43,9 @@ impl Hull {
         let faces = faces(&points);
         let solid = faces.len() >= 4 && faces.iter().all(|face| face.has_depth(&points));
         need(KEY, solid, "points that span a solid", "points in one plane")?;
-        Ok(Self { points, faces })
+        let surface =
+            surface(&points).map_err(|found| Fault::new("world", KEY, "a solid", found))?;
+        Ok(Self { points, faces, surface })
     }
 
     pub(crate) fn cast(&self, ray: &Ray) -> Option<Impact> {
@@ -49,12 +57,24 @@ impl Hull {
         self.faces.iter().all(|face| face.beyond_m(p) <= 0.0)
     }
 
+    pub(crate) fn nearest(&self, p: &Point3<f64>) -> Nearest {
+        Nearest::of_surface(&self.surface, p, Some(self.contains(p))).0
+    }
+
     pub(crate) fn bounds(&self) -> [Point3<f64>; 2] {
         let first = self.points[0];
         [
             self.points.iter().fold(first, |a, b| a.inf(b)),
             self.points.iter().fold(first, |a, b| a.sup(b)),
         ]
+    }
+}
+
+impl SupportMap for Hull {
+    fn local_support_point(&self, dir: Vector) -> Vector {
+        let reach = |p: &&Point3<f64>| p.coords.dot(&from_parry(dir));
+        let farthest = self.points.iter().max_by(|a, b| reach(a).total_cmp(&reach(b)));
+        farthest.map_or(Vector::ZERO, to_parry)
     }
 }
 
@@ -66,6 +86,12 @@ impl Face {
     fn has_depth(&self, points: &[Point3<f64>]) -> bool {
         points.iter().any(|p| self.beyond_m(p) < -1e3 * FLAT_M)
     }
+}
+
+fn surface(points: &[Point3<f64>]) -> Result<TriMesh, String> {
+    let corners: Vec<Vector> = points.iter().map(to_parry).collect();
+    let (corners, faces) = try_convex_hull(&corners).map_err(|error| error.to_string())?;
+    TriMesh::new(corners, faces).map_err(|error| error.to_string())
 }
 
 /// Every plane through three of the points that has no point beyond it, each once.

@@ -48,6 +48,18 @@ impl<'w> Instant<'w> {
         Self { world, moving: Bodies::new(movers.chain(ego).collect()) }
     }
 
+    /// The world as it would be without the ego, each mover at its own time, seconds.
+    pub(crate) fn without_ego(world: &'w World, mover_time_s: impl Fn(usize) -> f64) -> Self {
+        let movers =
+            (0..world.movers.len()).flat_map(|at| mover_bodies(world, at, mover_time_s(at)));
+        Self { world, moving: Bodies::new(movers.collect()) }
+    }
+
+    /// Everything solid but the ground: what stands, then what moves.
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = &Body> {
+        self.world.standing.iter().chain(self.moving.iter())
+    }
+
     /// What a ray of the world meets first, at most `max_m` away.
     ///
     /// At one distance, what stands wins over what moves, and that over the ground.
@@ -71,7 +83,8 @@ impl<'w> Instant<'w> {
     }
 }
 
-fn mover_bodies(world: &World, at: usize, time_s: f64) -> impl Iterator<Item = Body> {
+/// The parts of a mover at a time.
+pub(crate) fn mover_bodies(world: &World, at: usize, time_s: f64) -> impl Iterator<Item = Body> {
     let mover = &world.movers[at];
     let world_from_mover = mover.box_at(time_s, &world.ground).world_from_box;
     mover.parts.iter().map(move |part| {

@@ -4,11 +4,14 @@ use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 use occlabel_core::Fault;
-use parry3d_f64::query::{PointQuery, RayCast};
-use parry3d_f64::shape::{TriMesh, TriMeshFlags};
+use parry3d_f64::math::Pose as ParryPose;
+use parry3d_f64::query::details::intersection_test_composite_shape_shape;
+use parry3d_f64::query::{DefaultQueryDispatcher, PointQuery, RayCast};
+use parry3d_f64::shape::{Cuboid, TriMesh, TriMeshFlags};
 
 use crate::check::{metres, need};
 use crate::convert::{from_parry, ray_to_parry, to_parry};
+use crate::nearest::Nearest;
 use crate::{Impact, Ray};
 
 /// A solid within a closed surface. Surfaces that pass through themselves are not refused.
@@ -43,10 +46,27 @@ impl Mesh {
         self.surface.contains_local_point(to_parry(p))
     }
 
+    pub(crate) fn nearest(&self, p: &Point3<f64>) -> Nearest {
+        Nearest::of_surface(&self.surface, p, None).0
+    }
+
+    pub(crate) fn overlaps(&self, cuboid: &Cuboid, mesh_from_cuboid: &ParryPose) -> bool {
+        let centre = Point3::from(from_parry(mesh_from_cuboid.translation));
+        meets(&self.surface, cuboid, mesh_from_cuboid) || self.contains(&centre)
+    }
+
     pub(crate) fn bounds(&self) -> [Point3<f64>; 2] {
         let aabb = self.surface.local_aabb();
         [aabb.mins, aabb.maxs].map(|corner| Point3::from(from_parry(corner)))
     }
+}
+
+/// Whether a cuboid touches any triangle of a surface.
+pub(crate) fn meets(surface: &TriMesh, cuboid: &Cuboid, surface_from_cuboid: &ParryPose) -> bool {
+    let dispatcher = DefaultQueryDispatcher;
+    let found =
+        intersection_test_composite_shape_shape(&dispatcher, surface_from_cuboid, surface, cuboid);
+    found.intersecting
 }
 
 fn check_faces(vertices_m: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<(), Fault> {

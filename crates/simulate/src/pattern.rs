@@ -29,6 +29,9 @@ pub enum Pattern {
         /// Shots per revolution. They stand 0.3 steps off the axes, so that no ray runs in a plane
         /// of voxel faces.
         azimuths: usize,
+        /// So many times more shots, and beams between the beams: see [`Pattern::denser`].
+        #[serde(default = "once")]
+        density: usize,
     },
     /// A pattern that never repeats, as of Livox' MID360: four lasers a quarter turn apart nod up
     /// and down as they turn.
@@ -39,7 +42,14 @@ pub enum Pattern {
         min_rad: f64,
         /// Highest elevation.
         max_rad: f64,
+        /// The square of it times more shots: see [`Pattern::denser`].
+        #[serde(default = "once")]
+        density: usize,
     },
+}
+
+fn once() -> usize {
+    1
 }
 
 /// Elevations of beams, radians above the xy plane.
@@ -60,7 +70,7 @@ pub enum Beams {
 }
 
 impl Beams {
-    /// How many there are.
+    /// How many are given.
     pub fn count(&self) -> usize {
         match self {
             Self::ElevationsRad(list) => list.len(),
@@ -76,34 +86,61 @@ impl Beams {
             }
         }
     }
+
+    /// Elevation of a ring of a denser pattern: every `density`-th is a given beam.
+    fn dense_elevation_rad(&self, ring: usize, density: usize) -> f64 {
+        let (beam, between) = (ring / density, ring % density);
+        let below_rad = self.elevation_rad(beam);
+        if between == 0 {
+            return below_rad;
+        }
+        let step_rad = self.elevation_rad(beam + 1) - below_rad;
+        below_rad + step_rad * between as f64 / density as f64
+    }
 }
 
 impl Pattern {
+    /// The pattern with `factor` times its density: it holds all its rays and, evenly between
+    /// them, about the square of the factor times as many. Ring r becomes ring `factor * r`, shot
+    /// s shot `factor * s` (of a rosette the factor's square times s).
+    pub fn denser(&self, factor: usize) -> Self {
+        let mut denser = self.clone();
+        match &mut denser {
+            Self::Spinning { density, .. } | Self::Rosette { density, .. } => *density *= factor,
+        }
+        denser
+    }
+
     /// How many shots a sweep has.
     pub fn shots(&self) -> usize {
-        match self {
-            Self::Spinning { azimuths, .. } => *azimuths,
-            Self::Rosette { shots, .. } => *shots,
+        match *self {
+            Self::Spinning { azimuths, density, .. } => azimuths.saturating_mul(density),
+            Self::Rosette { shots, density, .. } => {
+                shots.saturating_mul(density.saturating_mul(density))
+            }
         }
     }
 
     /// How many rays a shot has; a ray's place in its shot is its ring.
     pub fn rings(&self) -> usize {
         match self {
-            Self::Spinning { beams, .. } => beams.count(),
+            Self::Spinning { beams, density, .. } => {
+                beams.count().saturating_sub(1).saturating_mul(*density) + beams.count().min(1)
+            }
             Self::Rosette { .. } => ROSETTE_LASERS,
         }
     }
 
     /// Unit direction of a ray in the lidar's frame.
     pub fn direction(&self, sweep: usize, shot: usize, ring: usize) -> Vector3<f64> {
-        match self {
-            Self::Spinning { beams, azimuths } => {
-                let azimuth_rad = TAU * (shot as f64 + 0.3) / *azimuths as f64;
-                towards(azimuth_rad, beams.elevation_rad(ring))
+        match *self {
+            Self::Spinning { ref beams, azimuths, density } => {
+                let step = shot as f64 / density as f64;
+                let azimuth_rad = TAU * (step + 0.3) / azimuths as f64;
+                towards(azimuth_rad, beams.dense_elevation_rad(ring, density))
             }
-            Self::Rosette { shots, min_rad, max_rad } => {
-                let sweeps = sweep as f64 + shot as f64 / *shots as f64;
+            Self::Rosette { min_rad, max_rad, .. } => {
+                let sweeps = sweep as f64 + shot as f64 / self.shots() as f64;
                 let quarter = ring as f64 / ROSETTE_LASERS as f64;
                 let nod = libm::sin(TAU * (sweeps * ROSETTE_NODS + quarter).fract());
                 let elevation_rad = min_rad + (max_rad - min_rad) * (nod + 1.0) / 2.0;
@@ -113,6 +150,8 @@ impl Pattern {
     }
 
     pub(crate) fn check(&self) -> Result<(), Fault> {
+        let (Self::Spinning { density, .. } | Self::Rosette { density, .. }) = self;
+        need("density", *density >= 1, "at least 1", density)?;
         let (shots, rings) = (self.shots(), self.rings());
         let rays = shots.saturating_mul(rings);
         need("rays", (1..=MOST_RAYS).contains(&rays), "1 to 2^24 rays a sweep", rays)?;
@@ -148,7 +187,7 @@ mod tests {
     #[test]
     fn beams_span_the_elevations_and_azimuths_the_turn() {
         let beams = Beams::Even { count: 5, min_rad: -0.4, max_rad: 0.2 };
-        let pattern = Pattern::Spinning { beams, azimuths: 8 };
+        let pattern = Pattern::Spinning { beams, azimuths: 8, density: 1 };
         for (ring, expected) in [(0, -0.4), (2, -0.1), (4, 0.2)] {
             let found = libm::asin(pattern.direction(3, 5, ring).z);
             assert!((found - expected).abs() < 1e-12, "{found}");
@@ -159,12 +198,37 @@ mod tests {
 
     #[test]
     fn a_rosette_stays_in_its_band_and_never_repeats() {
-        let pattern = Pattern::Rosette { shots: 500, min_rad: -0.12, max_rad: 0.9 };
+        let pattern = Pattern::Rosette { shots: 500, min_rad: -0.12, max_rad: 0.9, density: 1 };
         let sweep = |k| (0..500).map(|shot| pattern.direction(k, shot, 0)).collect::<Vec<_>>();
         let (first, second) = (sweep(0), sweep(1));
         let elevations: Vec<f64> = first.iter().map(|ray| libm::asin(ray.z)).collect();
         assert!(elevations.iter().all(|e| (-0.12 - 1e-9..=0.9 + 1e-9).contains(e)));
         let near = |ray: &Vector3<f64>| first.iter().any(|known| (known - ray).norm() < 1e-4);
         assert_eq!(second.iter().filter(|ray| near(ray)).count(), 0);
+    }
+
+    #[test]
+    fn a_denser_pattern_holds_the_rays_of_the_sparser_one() {
+        let uneven = Beams::ElevationsRad(vec![-0.5, -0.2, -0.1, 0.3]);
+        let even = Beams::Even { count: 5, min_rad: -0.4, max_rad: 0.2 };
+        let spinning = |beams| Pattern::Spinning { beams, azimuths: 7, density: 1 };
+        let rosette = Pattern::Rosette { shots: 50, min_rad: -0.1, max_rad: 0.9, density: 1 };
+        for (pattern, shots, rings) in
+            [(spinning(uneven), 3, 3), (spinning(even), 3, 3), (rosette, 9, 1)]
+        {
+            let dense = pattern.denser(3);
+            assert_eq!(dense.shots(), shots * pattern.shots());
+            assert_eq!(dense.rings(), rings * (pattern.rings() - 1) + 1);
+            for (shot, ring) in (0..pattern.shots() * pattern.rings())
+                .map(|ray| (ray / pattern.rings(), ray % pattern.rings()))
+            {
+                let off = pattern.direction(4, shot, ring)
+                    - dense.direction(4, shots * shot, rings * ring);
+                assert!(off.norm() < 1e-9, "{pattern:?} {shot} {ring}: {off:?}");
+            }
+        }
+        let beam =
+            Pattern::Spinning { beams: Beams::ElevationsRad(vec![0.1]), azimuths: 4, density: 2 };
+        assert_eq!((beam.rings(), beam.shots()), (1, 8));
     }
 }

@@ -5,8 +5,12 @@
 
 use nalgebra::{Point3, Vector3};
 use occlabel_core::Fault;
+use parry3d_f64::math::{Pose as ParryPose, Vector};
+use parry3d_f64::query::details::{
+    intersection_test_cuboid_cuboid, intersection_test_support_map_support_map,
+};
 use parry3d_f64::query::{PointQuery, RayCast};
-use parry3d_f64::shape::{Capsule, Cuboid};
+use parry3d_f64::shape::{Capsule, Cuboid, SupportMap};
 use serde::Deserialize;
 
 use crate::check::{lengths, metres};
@@ -14,6 +18,7 @@ use crate::clip::Clip;
 use crate::convert::{from_parry, ray_to_parry, to_parry};
 use crate::hull::Hull;
 use crate::mesh::Mesh;
+use crate::nearest::Nearest;
 use crate::{Impact, Ray};
 
 /// A shape as a world file says it; metres.
@@ -62,10 +67,25 @@ pub struct Shape(Form);
 #[derive(Clone, Debug)]
 enum Form {
     Box(Cuboid),
-    Cylinder { radius_m: f64, half_m: f64 },
+    Cylinder(Cylinder),
     Capsule(Capsule),
-    Hull(Hull),
+    Hull(Box<Hull>),
     Mesh(Box<Mesh>),
+}
+
+/// A cylinder around the z axis; parry's stands around y.
+#[derive(Clone, Copy, Debug)]
+struct Cylinder {
+    radius_m: f64,
+    half_m: f64,
+}
+
+impl SupportMap for Cylinder {
+    fn local_support_point(&self, dir: Vector) -> Vector {
+        let across = (dir.x * dir.x + dir.y * dir.y).sqrt();
+        let reach = if across > 0.0 { self.radius_m / across } else { 0.0 };
+        Vector::new(dir.x * reach, dir.y * reach, self.half_m.copysign(dir.z))
+    }
 }
 
 impl TryFrom<ShapeFile> for Shape {
@@ -76,7 +96,7 @@ impl TryFrom<ShapeFile> for Shape {
             ShapeFile::Box { size_m } => cuboid(size_m)?,
             ShapeFile::Cylinder { radius_m, height_m } => cylinder(radius_m, height_m)?,
             ShapeFile::Capsule { from_m, to_m, radius_m } => capsule(from_m, to_m, radius_m)?,
-            ShapeFile::Hull { points_m } => Form::Hull(Hull::new(&points_m)?),
+            ShapeFile::Hull { points_m } => Form::Hull(Hull::new(&points_m)?.into()),
             ShapeFile::Mesh { vertices_m, faces } => {
                 Form::Mesh(Mesh::new(&vertices_m, &faces)?.into())
             }
@@ -93,7 +113,7 @@ fn cuboid(size_m: [f64; 3]) -> Result<Form, Fault> {
 fn cylinder(radius_m: f64, height_m: f64) -> Result<Form, Fault> {
     lengths("cylinder.radius_m", &[radius_m])?;
     lengths("cylinder.height_m", &[height_m])?;
-    Ok(Form::Cylinder { radius_m, half_m: height_m / 2.0 })
+    Ok(Form::Cylinder(Cylinder { radius_m, half_m: height_m / 2.0 }))
 }
 
 fn capsule(from_m: [f64; 3], to_m: [f64; 3], radius_m: f64) -> Result<Form, Fault> {
@@ -108,7 +128,7 @@ impl Shape {
     pub fn cast(&self, ray: &Ray, max_m: f64) -> Option<Impact> {
         let impact = match &self.0 {
             Form::Box(form) => parry_cast(form, ray, max_m),
-            Form::Cylinder { radius_m, half_m } => Clip::whole()
+            Form::Cylinder(Cylinder { radius_m, half_m }) => Clip::whole()
                 .disc(ray, *radius_m)
                 .half_space(ray, &Vector3::z(), *half_m)
                 .half_space(ray, &-Vector3::z(), *half_m)
@@ -124,7 +144,7 @@ impl Shape {
     pub fn contains(&self, p: &Point3<f64>) -> bool {
         match &self.0 {
             Form::Box(form) => form.contains_local_point(to_parry(p)),
-            Form::Cylinder { radius_m, half_m } => {
+            Form::Cylinder(Cylinder { radius_m, half_m }) => {
                 p.z.abs() <= *half_m && p.coords.xy().norm_squared() <= radius_m * radius_m
             }
             Form::Capsule(form) => form.contains_local_point(to_parry(p)),
@@ -133,11 +153,36 @@ impl Shape {
         }
     }
 
+    /// The place of its surface that is nearest to a point of the shape's frame.
+    pub(crate) fn nearest(&self, p: &Point3<f64>) -> Nearest {
+        match &self.0 {
+            Form::Box(form) => Nearest::of_cuboid(&from_parry(form.half_extents), p),
+            Form::Cylinder(form) => Nearest::of_cylinder(form.radius_m, form.half_m, p),
+            Form::Capsule(form) => Nearest::of_capsule(form, p),
+            Form::Hull(form) => form.nearest(p),
+            Form::Mesh(form) => form.nearest(p),
+        }
+    }
+
+    /// Whether a cuboid that stands somewhere in the shape's frame has a point in common with it.
+    pub(crate) fn overlaps(&self, cuboid: &Cuboid, shape_from_cuboid: &ParryPose) -> bool {
+        fn convex(form: &impl SupportMap, cuboid: &Cuboid, pose: &ParryPose) -> bool {
+            intersection_test_support_map_support_map(pose, form, cuboid)
+        }
+        match &self.0 {
+            Form::Box(form) => intersection_test_cuboid_cuboid(shape_from_cuboid, form, cuboid),
+            Form::Cylinder(form) => convex(form, cuboid, shape_from_cuboid),
+            Form::Capsule(form) => convex(form, cuboid, shape_from_cuboid),
+            Form::Hull(form) => convex(form.as_ref(), cuboid, shape_from_cuboid),
+            Form::Mesh(form) => form.overlaps(cuboid, shape_from_cuboid),
+        }
+    }
+
     /// Lower and upper corner of what the shape fills of its frame.
     pub(crate) fn bounds(&self) -> [Point3<f64>; 2] {
         let aabb = match &self.0 {
             Form::Box(form) => form.local_aabb(),
-            Form::Cylinder { radius_m, half_m } => {
+            Form::Cylinder(Cylinder { radius_m, half_m }) => {
                 let reach = Vector3::new(*radius_m, *radius_m, *half_m);
                 return [Point3::from(-reach), Point3::from(reach)];
             }

@@ -185,8 +185,7 @@ fn class(pair: &Pair, ring: &mut Ring) {
         return;
     };
     let is_right = label == class;
-    let is_present =
-        1_u32.checked_shl(label.0.into()).is_some_and(|bit| pair.truth.classes & bit != 0);
+    let is_present = pair.truth.classes.contains(label);
     ring.count(Question::ClassAccuracy, Some(class), is_right);
     ring.count(Question::ClassPresent, Some(class), is_right || is_present);
 }

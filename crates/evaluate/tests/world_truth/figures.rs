@@ -1,7 +1,7 @@
 //! Every figure by hand, each with a case that tells it from its neighbours.
 
 use crate::support::*;
-use occlabel_core::{ClassId, VoxelTruth};
+use occlabel_core::{ClassId, ClassSet, VoxelTruth};
 
 #[test]
 fn a1_counts_the_least_touch_of_a_solid() {
@@ -83,8 +83,8 @@ fn a4_asks_of_crossed_and_empty_voxels() {
 
 #[test]
 fn a5_asks_of_true_positives_and_a5p_forgives_a_class_that_passes() {
-    let kerb = VoxelTruth { classes: 1 << ROAD | 1 << WALL, ..surface(WALL) };
-    let unnamed = VoxelTruth { class: None, classes: 0, ..surface(WALL) };
+    let kerb = VoxelTruth { classes: [ROAD, WALL].map(ClassId).into_iter().collect(), ..surface(WALL) };
+    let unnamed = VoxelTruth { class: None, classes: ClassSet::default(), ..surface(WALL) };
     let quality = judge_row(&[
         (occupied(WALL), surface(WALL)),
         (occupied(ROAD), kerb),

@@ -1,7 +1,7 @@
 //! Tallies add up, and perfect labels are perfect, on random worlds.
 
 use crate::support::*;
-use occlabel_core::{GridSpec, VoxelTruth};
+use occlabel_core::{ClassId, GridSpec, VoxelTruth};
 use occlabel_evaluate::{Limits, Scale, Tally};
 
 /// A small generator of whole numbers, the same everywhere (Marsaglia 2003).
@@ -24,7 +24,10 @@ impl Dice {
         };
         let is_kerb = truth.solid > 0.0 && self.roll(3) == 0;
         let solid = if self.roll(3) == 0 { truth.solid * 0.05 } else { truth.solid };
-        let classes = truth.classes | u32::from(is_kerb) << ROAD;
+        let mut classes = truth.classes;
+        if is_kerb {
+            classes.insert(ClassId(ROAD));
+        }
         let ends = truth.ends * self.roll(2) as u32;
         VoxelTruth { solid, classes, ends, dense_ends: truth.ends, ..truth }
     }

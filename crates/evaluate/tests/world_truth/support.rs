@@ -37,7 +37,7 @@ pub(crate) fn surface(class: u8) -> VoxelTruth {
         surface: true,
         clearance: Some(0.0),
         class: Some(ClassId(class)),
-        classes: 1 << class,
+        classes: [ClassId(class)].into_iter().collect(),
         ends: 5,
         ..VoxelTruth::default()
     }
