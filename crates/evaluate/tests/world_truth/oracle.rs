@@ -1,6 +1,6 @@
 //! The definitions of `docs/quality.md`, one line each, against the judge.
 
-use occlabel_core::VoxelTruth;
+use occlabel_core::{ClassId, VoxelTruth};
 
 use crate::sums::{Dice, block};
 use crate::support::*;
@@ -41,7 +41,7 @@ const DEFINITIONS: [Definition; 11] = [
     ("free_purity_strict", is_free, |(_, t)| t.solid == 0.0),
     ("free_recall", |(_, t)| t.crossed && t.solid == 0.0, is_free),
     ("class_accuracy", is_right, |(l, t)| t.class.map(|class| class.0) == Some(l.semantics)),
-    ("class_present", is_right, |(l, t)| t.classes >> l.semantics & 1 == 1),
+    ("class_present", is_right, |(l, t)| t.classes.contains(ClassId(l.semantics))),
     ("trail_rate", |(_, t)| t.swept, is_occupied),
     ("flow_missing", is_moving, |(l, _)| l.flow[0].is_nan()),
     ("static_flow", is_still, |(l, _)| l.flow != [0.0; 3]),
