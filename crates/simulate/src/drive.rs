@@ -2,8 +2,8 @@
 
 use nalgebra::Point3;
 use occlabel_core::{
-    ClassId, Exposure, Fault, Keyframe, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader,
-    Taxonomy, Timestamp, TrackId,
+    ClassId, Exposure, Fault, Keyframe, LIDAR_ORIGIN, PointCloud, PointLabel, Pose, Scene,
+    SweepHeader, Taxonomy, Timestamp, TrackId,
 };
 
 use crate::annotator::{Boxes, LabelledSweeps, LoggedPoses, Sightings};
@@ -66,11 +66,6 @@ impl Drive {
         &self.scene
     }
 
-    /// Poses as logged, at any time.
-    pub fn poses(&self) -> &LoggedPoses {
-        &self.poses
-    }
-
     /// The returns of a sweep of the scene as its lidar measured them.
     pub fn returns(&self, sweep: usize) -> Vec<Return> {
         self.lidar(sweep).sweep(&self.world, self.sweeps[sweep].number)
@@ -80,7 +75,8 @@ impl Drive {
     /// [`Self::returns`].
     ///
     /// Points of a rolling sweep and their rays' origins are moved there from where the lidar truly
-    /// was at their own time, unless its `deskew` is off: then they are as measured.
+    /// was at their own time, unless its `deskew` is off: then they are as measured. Boxes stand
+    /// where movers truly were either way.
     pub fn points(&self, sweep: usize) -> PointCloud<PointLabel> {
         let (lidar, key) = (self.lidar(sweep), self.sweeps[sweep]);
         let sweep_from_world = lidar.world_from_lidar(&self.world, key.time).inverse();
@@ -106,6 +102,11 @@ impl Drive {
     pub fn exposures(&self, camera: usize) -> Vec<Exposure> {
         let times = self.world.cameras[camera].clock.ticks(self.world.duration_s);
         times.map(|time| exposure(&self.world, &self.poses, camera, time)).collect()
+    }
+
+    /// A camera's mounting as logged, by its number in the scene.
+    pub fn ego_from_camera(&self, camera: usize) -> Pose {
+        self.poses.ego_from_camera[camera]
     }
 
     /// The number of a sweep of the scene, by its time and lidar.
@@ -145,18 +146,6 @@ impl Drive {
     /// What a part of the world truly is.
     pub fn label_of(&self, what: What) -> PointLabel {
         self.labels.of(what)
-    }
-
-    /// The raw label of a point of a part of the world that is logged with a label; none if it is
-    /// unlabelled.
-    pub fn raw_label(&self, what: What, logged: PointLabel) -> Option<&str> {
-        match logged {
-            PointLabel::Unlabelled => None,
-            PointLabel::Class(class) if logged != self.label_of(what) => {
-                self.labels.raw_name(class)
-            }
-            PointLabel::Class(_) | PointLabel::Ignored => Some(self.world.class_of(what)),
-        }
     }
 
     pub(crate) fn colour(&self, class: ClassId) -> [u8; 3] {

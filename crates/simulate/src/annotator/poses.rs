@@ -1,6 +1,6 @@
 //! Poses as the log has them.
 
-use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Translation3, Vector3};
 use occlabel_core::{Pose, Timestamp};
 
 use crate::World;
@@ -14,11 +14,11 @@ const HEADING_WAY_M: f64 = 100.0;
 
 /// Poses as the log has them: the true ones, with the annotator's drift and miscalibration.
 #[derive(Clone, Debug)]
-pub struct LoggedPoses {
+pub(crate) struct LoggedPoses {
     /// Mounting of each lidar.
-    pub ego_from_lidar: Vec<Pose>,
+    pub(crate) ego_from_lidar: Vec<Pose>,
     /// Mounting of each camera.
-    pub ego_from_camera: Vec<Pose>,
+    pub(crate) ego_from_camera: Vec<Pose>,
     drift: Option<Drift>,
 }
 
@@ -45,11 +45,8 @@ impl LoggedPoses {
         }
     }
 
-    /// The ego's logged pose.
-    ///
-    /// With drift e and a way s driven since time zero, its place is off by `e s` in one direction
-    /// of the world, drawn once a drive, and its heading by `e s / 100 m` radians to one side.
-    pub fn world_from_ego(&self, world: &World, time: Timestamp) -> Pose {
+    /// The ego's logged pose; see [`Annotator::pose_drift`](crate::Annotator::pose_drift).
+    pub(crate) fn world_from_ego(&self, world: &World, time: Timestamp) -> Pose {
         let time_s = time.seconds_since(Timestamp(0));
         let world_from_ego = world.world_from_ego(time_s);
         let Some(drift) = &self.drift else { return world_from_ego };
@@ -60,18 +57,15 @@ impl LoggedPoses {
             * yaw_pitch_roll(turned_rad, 0.0, 0.0)
     }
 
-    /// A lidar's logged pose.
-    pub fn world_from_lidar(&self, world: &World, lidar: usize, time: Timestamp) -> Pose {
-        self.world_from_ego(world, time) * self.ego_from_lidar[lidar]
-    }
-
     /// Where the log has what a lidar truly sees at a time: true world to logged world.
     pub(crate) fn logged_from_true(&self, world: &World, lidar: usize, time: Timestamp) -> Pose {
         let exact = &world.lidars[lidar];
         if self.drift.is_none() && self.ego_from_lidar[lidar] == exact.ego_from_lidar {
             return Pose::identity();
         }
-        self.world_from_lidar(world, lidar, time) * exact.world_from_lidar(world, time).inverse()
+        self.world_from_ego(world, time)
+            * self.ego_from_lidar[lidar]
+            * exact.world_from_lidar(world, time).inverse()
     }
 }
 
@@ -118,7 +112,7 @@ fn mountings<'a>(
     let (off_m, off_rad) = (world.annotator.calibration_m, world.annotator.calibration_rad);
     let logged = |(at, pose): (usize, &Pose)| {
         let chance = Chance::of(world.seed, kind, at, 0);
-        let turned: UnitQuaternion<f64> = about_axis(&chance.direction(1), off_rad);
+        let turned = about_axis(&chance.direction(1), off_rad);
         Translation3::from(chance.direction(0) * off_m) * pose * turned
     };
     ego_from_sensor.enumerate().map(logged).collect()
