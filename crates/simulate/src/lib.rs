@@ -4,7 +4,8 @@
 //! Here the truth comes first: a [`World`] is a text file of solids and ways, everything in it has
 //! a closed form or a checked mesh, and at any instant it answers what a ray meets and what a point
 //! lies in. A [`Drive`] is what sensors record of it, in the words of `occlabel_core`, so that the
-//! pipeline labels it as it would a log. Chance is a hash of the ray's own number: the same world
+//! pipeline labels it as it would a log; an [`Annotator`] may come between and get things wrong.
+//! [`render()`] shows what a camera saw. Chance is a hash of the ray's own number: the same world
 //! gives the same bytes on any number of threads and any machine.
 //!
 //! ```
@@ -46,7 +47,9 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod annotator;
 mod bodies;
+mod body_mask;
 mod camera;
 mod check;
 mod clip;
@@ -57,14 +60,18 @@ mod ego;
 mod ground;
 mod hull;
 mod instant;
+mod labels;
 mod lidar;
 mod mesh;
 mod mover;
 mod nearest;
 mod noise;
+mod palette;
 mod pattern;
 mod ray;
+mod render;
 mod rotation;
+mod schedule;
 mod shape;
 mod swing;
 mod towed;
@@ -73,6 +80,7 @@ mod truth;
 mod world;
 mod world_file;
 
+pub use annotator::{Annotator, BoxTime, LabelledSweeps, Unboxed};
 pub use camera::WorldCamera;
 pub use clock::Clock;
 pub use drive::Drive;
@@ -81,8 +89,10 @@ pub use ground::{Band, Ground};
 pub use instant::{Hit, Instant, What};
 pub use lidar::{Lidar, Return};
 pub use mover::Mover;
+pub use palette::class_colour;
 pub use pattern::{Beams, Pattern};
 pub use ray::{Impact, Ray};
+pub use render::{ClassImage, NO_CLASS, render};
 pub use shape::{Shape, ShapeFile};
 pub use swing::Swing;
 pub use trajectory::{Place, Trajectory, Waypoint};
