@@ -83,7 +83,8 @@ fn a4_asks_of_crossed_and_empty_voxels() {
 
 #[test]
 fn a5_asks_of_true_positives_and_a5p_forgives_a_class_that_passes() {
-    let kerb = VoxelTruth { classes: [ROAD, WALL].map(ClassId).into_iter().collect(), ..surface(WALL) };
+    let kerb =
+        VoxelTruth { classes: [ROAD, WALL].map(ClassId).into_iter().collect(), ..surface(WALL) };
     let unnamed = VoxelTruth { class: None, classes: ClassSet::default(), ..surface(WALL) };
     let quality = judge_row(&[
         (occupied(WALL), surface(WALL)),
