@@ -80,7 +80,8 @@ impl Drive {
     /// [`Self::returns`].
     ///
     /// Points of a rolling sweep and their rays' origins are moved there from where the lidar truly
-    /// was at their own time, unless its `deskew` is off: then they are as measured.
+    /// was at their own time, unless its `deskew` is off: then they are as measured. Boxes stand
+    /// where movers truly were either way.
     pub fn points(&self, sweep: usize) -> PointCloud<PointLabel> {
         let (lidar, key) = (self.lidar(sweep), self.sweeps[sweep]);
         let sweep_from_world = lidar.world_from_lidar(&self.world, key.time).inverse();

@@ -4,7 +4,8 @@
 //! Here the truth comes first: a [`World`] is a text file of solids and ways, everything in it has
 //! a closed form or a checked mesh, and at any instant it answers what a ray meets and what a point
 //! lies in. A [`Drive`] is what sensors record of it, in the words of `occlabel_core`, so that the
-//! pipeline labels it as it would a log. Chance is a hash of the ray's own number: the same world
+//! pipeline labels it as it would a log; an [`Annotator`] may come between and get things wrong.
+//! [`render()`] shows what a camera saw. Chance is a hash of the ray's own number: the same world
 //! gives the same bytes on any number of threads and any machine.
 //!
 //! ```

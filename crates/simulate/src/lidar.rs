@@ -57,7 +57,7 @@ pub struct Lidar {
     /// Whether each shot has its own time; if not, all are taken when the sweep begins.
     pub rolling: bool,
     /// Whether the recorder moves the points of a rolling sweep to where the lidar stood at the
-    /// sweep's time; if not, they are logged as if all were measured there, as nuScenes does.
+    /// sweep's time; if not, they are logged as if all were measured there.
     pub deskew: bool,
 }
 

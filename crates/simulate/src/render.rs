@@ -12,7 +12,7 @@ pub const NO_CLASS: u8 = u8::MAX;
 /// What is farther is sky, metres.
 const FARTHEST_M: f64 = 2000.0;
 /// How bright a surface is that faces away from the light.
-const AMBIENT: f64 = 0.45;
+const AMBIENT: f64 = 0.4;
 /// Where the light comes from, in world: above, from the left behind of who looks along x.
 const LIGHT: [f64; 3] = [-0.48, 0.36, 0.8];
 
@@ -107,7 +107,8 @@ fn shown(drive: &Drive, hit: &Hit) -> Pixel {
         What::Mover(at) => at as u16 + 1,
         What::Ground(_) | What::Static(_) | What::Ego => 0,
     };
-    let facing = hit.normal.dot(&Vector3::from(LIGHT)).max(0.0);
+    // Lambert's law wrapped around, so that faces in the shade differ too.
+    let facing = (1.0 + hit.normal.dot(&Vector3::from(LIGHT))) / 2.0;
     let bright = AMBIENT + (1.0 - AMBIENT) * facing;
     let rgb = colour.map(|channel| (f64::from(channel) * bright).round() as u8);
     Pixel { class, instance, distance_m: hit.distance_m as f32, rgb }

@@ -105,8 +105,8 @@ fn colours_are_the_classes_own_dimmed_by_the_light() {
     let drive = drive(WORLD);
     let image = image(&drive);
     let road = (85 * 161 + 80) * 3;
-    // Straight up: 0.45 + 0.55 * 0.8 of the colour.
-    let expected = class_colour("driveable_surface").map(|c| (f64::from(c) * 0.89).round() as u8);
+    // Straight up: 0.4 + 0.6 * (1 + 0.8) / 2 of the colour.
+    let expected = class_colour("driveable_surface").map(|c| (f64::from(c) * 0.94).round() as u8);
     assert_eq!(image.rgb[road..road + 3], expected);
     assert_eq!(image.rgb.len(), 161 * 91 * 3);
 }

@@ -1,6 +1,6 @@
 //! Poses as the log has them.
 
-use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Translation3, Vector3};
 use occlabel_core::{Pose, Timestamp};
 
 use crate::World;
@@ -118,7 +118,7 @@ fn mountings<'a>(
     let (off_m, off_rad) = (world.annotator.calibration_m, world.annotator.calibration_rad);
     let logged = |(at, pose): (usize, &Pose)| {
         let chance = Chance::of(world.seed, kind, at, 0);
-        let turned: UnitQuaternion<f64> = about_axis(&chance.direction(1), off_rad);
+        let turned = about_axis(&chance.direction(1), off_rad);
         Translation3::from(chance.direction(0) * off_m) * pose * turned
     };
     ego_from_sensor.enumerate().map(logged).collect()
