@@ -138,6 +138,23 @@ impl Drive {
         Instant::new(&self.world, time_s, |mover| self.mover_time_s(keyframe, mover))
     }
 
+    /// Where the camera of an exposure truly stood; the scene's own pose may have drifted.
+    pub fn world_from_camera(&self, exposure: &Exposure) -> Pose {
+        let time_s = exposure.time.seconds_since(Timestamp(0));
+        self.world.world_from_ego(time_s) * self.world.cameras[exposure.camera].ego_from_camera
+    }
+
+    /// A sweep of the scene with its true poses.
+    pub fn true_header(&self, sweep: &SweepHeader) -> SweepHeader {
+        let time_s = sweep.time.seconds_since(Timestamp(0));
+        let mounting = self.world.lidars.iter().find(|lidar| lidar.name == sweep.lidar);
+        SweepHeader {
+            world_from_ego: self.world.world_from_ego(time_s),
+            ego_from_lidar: mounting.map_or(sweep.ego_from_lidar, |lidar| lidar.ego_from_lidar),
+            ..sweep.clone()
+        }
+    }
+
     /// The track that a mover of the world is in the scene; none if it has no box there.
     pub fn track_of(&self, mover: usize) -> Option<TrackId> {
         self.tracks[mover]

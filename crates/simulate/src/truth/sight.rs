@@ -46,10 +46,7 @@ impl<'a> Eye<'a> {
     ) -> Self {
         let world = drive.world();
         let camera = &world.cameras[exposure.camera];
-        // The scene's own pose may have drifted.
-        let time_s = exposure.time.seconds_since(Timestamp(0));
-        let world_from_camera = world.world_from_ego(time_s) * camera.ego_from_camera;
-        let grid_from_camera = at.world_from_grid.inverse() * world_from_camera;
+        let grid_from_camera = at.world_from_grid.inverse() * drive.world_from_camera(exposure);
         Self {
             instant,
             spec: at.spec,
