@@ -2,8 +2,8 @@
 
 use nalgebra::Point3;
 use occlabel_core::{
-    BoxTrack, Exposure, Fault, Keyframe, LIDAR_ORIGIN, Meaning, PointCloud, PointLabel, Scene,
-    SweepHeader, Taxonomy, Timestamp, TrackId,
+    BoxTrack, Exposure, Fault, Keyframe, LIDAR_ORIGIN, Meaning, PointCloud, PointLabel, Pose,
+    Scene, SweepHeader, Taxonomy, Timestamp, TrackId,
 };
 
 use crate::check::{each, need};
@@ -132,6 +132,11 @@ impl Drive {
     /// What a return from a part of the world is labelled.
     pub fn label_of(&self, what: What) -> PointLabel {
         self.labels.of(what)
+    }
+
+    /// A camera's mounting as the log has it, by its number in the scene.
+    pub fn ego_from_camera(&self, camera: usize) -> Pose {
+        self.world.cameras[camera].ego_from_camera
     }
 
     fn lidar(&self, sweep: usize) -> &Lidar {

@@ -70,6 +70,7 @@ mod towed;
 mod trajectory;
 mod world;
 mod world_file;
+mod write;
 
 pub use camera::WorldCamera;
 pub use clock::Clock;
@@ -85,3 +86,4 @@ pub use shape::{Shape, ShapeFile};
 pub use swing::Swing;
 pub use trajectory::{Place, Trajectory, Waypoint};
 pub use world::World;
+pub use write::{Images, Output, Written, write_nuscenes};
