@@ -8,8 +8,10 @@ mod nuscenes;
 mod png;
 mod points;
 mod raw_names;
+mod semantickitti;
 mod written;
 
 pub use files::Output;
 pub use nuscenes::write_nuscenes;
+pub use semantickitti::write_semantickitti;
 pub use written::{Images, Written};
