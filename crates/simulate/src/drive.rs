@@ -139,6 +139,11 @@ impl Drive {
         self.world.cameras[camera].ego_from_camera
     }
 
+    /// The ego's pose at a time as the log has it.
+    pub fn logged_ego(&self, time: Timestamp) -> Pose {
+        self.world.world_from_ego(time.seconds_since(Timestamp(0)))
+    }
+
     fn lidar(&self, sweep: usize) -> &Lidar {
         &self.world.lidars[self.sweeps[sweep].lidar]
     }

@@ -86,4 +86,4 @@ pub use shape::{Shape, ShapeFile};
 pub use swing::Swing;
 pub use trajectory::{Place, Trajectory, Waypoint};
 pub use world::World;
-pub use write::{Images, Output, Written, write_nuscenes, write_semantickitti};
+pub use write::{Images, Output, Written, write_mcap, write_nuscenes, write_semantickitti};

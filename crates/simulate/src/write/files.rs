@@ -103,6 +103,11 @@ impl OutputFile {
         self.writer.write_all(bytes).map_err(|error| refused(&self.path, &error))
     }
 
+    /// The path, and what writes there.
+    pub(crate) fn into_parts(self) -> (PathBuf, BufWriter<File>) {
+        (self.path, self.writer)
+    }
+
     /// Writes what is still held back.
     pub(crate) fn finish(mut self) -> Result<(), Fault> {
         self.writer.flush().map_err(|error| refused(&self.path, &error))

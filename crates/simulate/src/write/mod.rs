@@ -3,7 +3,9 @@
 //! Each writes what the drive's scene says, faults of its annotator included, and nothing that a
 //! real log would not hold. All files go through [`Output`]: a log that looks whole is whole.
 
+mod exposures;
 mod files;
+mod mcap;
 mod nuscenes;
 mod png;
 mod points;
@@ -12,6 +14,7 @@ mod semantickitti;
 mod written;
 
 pub use files::Output;
+pub use mcap::write_mcap;
 pub use nuscenes::write_nuscenes;
 pub use semantickitti::write_semantickitti;
 pub use written::{Images, Written};

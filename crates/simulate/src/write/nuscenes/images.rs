@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use occlabel_core::{Exposure, Fault, Timestamp};
 
 use crate::Drive;
+use crate::write::exposures::exposures;
 use crate::write::files::Output;
 use crate::write::written::Images;
 
@@ -47,15 +48,6 @@ fn key_exposures(drive: &Drive, camera: usize) -> BTreeMap<Timestamp, String> {
         }
     }
     keys
-}
-
-/// The exposures of a camera that the log tells of, in order of time.
-fn exposures(drive: &Drive, camera: usize, _images: Images) -> Vec<Exposure> {
-    let of_keyframes = drive.scene().keyframes.iter().flat_map(|keyframe| &keyframe.exposures);
-    let mut exposures: Vec<Exposure> =
-        of_keyframes.filter(|exposure| exposure.camera == camera).cloned().collect();
-    exposures.dedup_by_key(|exposure| exposure.time);
-    exposures
 }
 
 fn capture(drive: &Drive, exposure: &Exposure, keys: &BTreeMap<Timestamp, String>) -> Capture {
