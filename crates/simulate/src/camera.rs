@@ -3,11 +3,13 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 use occlabel_core::camera::{
     BrownConrady, CameraError, CameraModel, Intrinsics, KannalaBrandt, Mei, Ocam, Pinhole,
+    RollingShutter, ShutterDirection,
 };
 use occlabel_core::{Camera, Fault, NamedCamera, Pose};
 use serde::Deserialize;
 
-use crate::check::{inside, need};
+use crate::body_mask::{MaskPart, body_mask};
+use crate::check::{inside, need, within};
 use crate::clock::Clock;
 use crate::rotation::PoseFile;
 
@@ -23,6 +25,29 @@ pub struct CameraFile {
     rate_hz: f64,
     #[serde(default)]
     offset_s: f64,
+    #[serde(default)]
+    body_mask: Vec<MaskPart>,
+    rolling_shutter: Option<ShutterFile>,
+}
+
+/// How a rolling shutter reads an image. The log tells it; images are rendered as if all lines were
+/// exposed at once.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ShutterFile {
+    #[serde(with = "DirectionFile")]
+    direction: ShutterDirection,
+    readout_s: f64,
+}
+
+/// The order in which lines are read, as a world file says it.
+#[derive(Deserialize)]
+#[serde(remote = "ShutterDirection", rename_all = "kebab-case")]
+enum DirectionFile {
+    TopToBottom,
+    BottomToTop,
+    LeftToRight,
+    RightToLeft,
 }
 
 /// A camera model as a world file says it: its calibration matrix by rows, then its coefficients in
@@ -60,9 +85,18 @@ impl TryFrom<CameraFile> for WorldCamera {
         let model = CameraModel::try_from(file.model)
             .map_err(|error| Fault::new("world", "model", "a calibration", error.to_string()))?;
         let mounting: Pose = inside("mounting", file.mounting.try_into())?;
-        let camera = Camera { model, width, height, body_mask: None, rolling_shutter: None };
+        let body_mask = body_mask(&file.body_mask, width, height)?;
+        let rolling_shutter = file.rolling_shutter.map(ShutterFile::build).transpose()?;
+        let camera = Camera { model, width, height, body_mask, rolling_shutter };
         let named = NamedCamera { name, camera };
         Ok(Self { named, ego_from_camera: mounting * body_from_optical(), clock })
+    }
+}
+
+impl ShutterFile {
+    fn build(self) -> Result<RollingShutter, Fault> {
+        within("rolling_shutter.readout_s", self.readout_s, 0.0, 10.0)?;
+        Ok(RollingShutter { direction: self.direction, readout_s: self.readout_s })
     }
 }
 

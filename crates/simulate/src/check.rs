@@ -15,6 +15,11 @@ pub(crate) fn need(
     if holds { Ok(()) } else { Err(Fault::new("world", key, expected, found.to_string())) }
 }
 
+/// A raw name that the taxonomy lacks.
+pub(crate) fn unknown(key: &str, expected: &str, raw: &str) -> Fault {
+    Fault::new("world", key, expected, format!("`{raw}`"))
+}
+
 /// Refuses what is not a number between two limits, both allowed.
 pub(crate) fn within(key: &str, value: f64, low: f64, high: f64) -> Result<(), Fault> {
     need(key, (low..=high).contains(&value), &format!("{low} to {high}"), value)

@@ -2,44 +2,32 @@
 
 use nalgebra::Point3;
 use occlabel_core::{
-    BoxTrack, Exposure, Fault, Keyframe, LIDAR_ORIGIN, Meaning, PointCloud, PointLabel, Pose,
-    Scene, SweepHeader, Taxonomy, Timestamp, TrackId,
+    ClassId, Exposure, Fault, Keyframe, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader,
+    Taxonomy, Timestamp, TrackId,
 };
 
-use crate::check::{each, need};
+use crate::annotator::{Boxes, LabelledSweeps, LoggedPoses, Sightings};
+use crate::labels::Labels;
 use crate::lidar::{Lidar, Return};
+use crate::schedule::{
+    SweepKey, exposure, exposure_times, keyframe_keys, nearest_exposures, sweep_keys,
+};
 use crate::{Instant, What, World};
-
-/// A keyframe has the exposures that are this near in time (labels.md section 2), seconds.
-const EXPOSURE_WITHIN_S: f64 = 0.1;
 
 /// A drive through a world, bound to a taxonomy.
 ///
-/// Every sweep's points are labelled, and every mover has a true box at every keyframe: what a
-/// perfect annotator would give.
+/// [`Self::scene`] and [`Self::points`] are what the log says, with all that the world's annotator
+/// gets wrong; [`Self::world`], [`Self::instant`] and [`Self::label_of`] are the truth.
 #[derive(Clone, Debug)]
 pub struct Drive {
     world: World,
     scene: Scene,
     sweeps: Vec<SweepKey>,
     labels: Labels,
-}
-
-/// Which lidar took a sweep, and the how many-th of its sweeps it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct SweepKey {
-    time: Timestamp,
-    lidar: usize,
-    number: usize,
-}
-
-/// What the labels of the world's parts mean.
-#[derive(Clone, Debug)]
-struct Labels {
-    ground: Vec<PointLabel>,
-    statics: Vec<PointLabel>,
-    movers: Vec<PointLabel>,
-    ego: PointLabel,
+    poses: LoggedPoses,
+    sightings: Sightings,
+    /// Of each mover, in the order of the world's.
+    tracks: Vec<Option<TrackId>>,
 }
 
 impl Drive {
@@ -51,16 +39,21 @@ impl Drive {
     pub fn new(world: World, taxonomy: &Taxonomy) -> Result<Self, Fault> {
         let labels = Labels::new(&world, taxonomy)?;
         let sweeps = sweep_keys(&world);
-        let keyframes = keyframes(&world, &sweeps)?;
+        let keyframes = keyframe_keys(&world, &sweeps)?;
+        let poses = LoggedPoses::new(&world);
+        let sightings = Sightings::new(&world, &keyframes);
+        let boxes =
+            Boxes { world: &world, poses: &poses, sightings: &sightings, keyframes: &keyframes };
         let scene = Scene {
             name: world.name.clone(),
-            sweeps: sweeps.iter().map(|key| header(&world, key)).collect(),
-            tracks: tracks(&world, taxonomy, &keyframes)?,
+            sweeps: headers(&world, &poses, &sweeps, &keyframes),
+            tracks: boxes.tracks(taxonomy)?,
             cameras: world.cameras.iter().map(|camera| camera.named.clone()).collect(),
-            keyframes,
+            keyframes: logged_keyframes(&world, &poses, &sweeps, &keyframes),
             ..Scene::default()
         };
-        Ok(Self { world, scene, sweeps, labels })
+        let tracks = world.movers.iter().map(|mover| track_named(&scene, &mover.name)).collect();
+        Ok(Self { world, scene, sweeps, labels, poses, sightings, tracks })
     }
 
     /// The world that is driven through.
@@ -68,9 +61,14 @@ impl Drive {
         &self.world
     }
 
-    /// Everything of the drive but its points.
+    /// Everything of the drive but its points, as logged.
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// Poses as logged, at any time.
+    pub fn poses(&self) -> &LoggedPoses {
+        &self.poses
     }
 
     /// The returns of a sweep of the scene as its lidar measured them.
@@ -78,16 +76,23 @@ impl Drive {
         self.lidar(sweep).sweep(&self.world, self.sweeps[sweep].number)
     }
 
-    /// The points of a sweep of the scene in its lidar's frame at the sweep's time.
+    /// The points of a sweep of the scene in its lidar's frame at the sweep's time, one for each of
+    /// [`Self::returns`].
     ///
-    /// Points of a rolling sweep are moved there from where the lidar was at their own time, and so
-    /// are their rays' origins.
+    /// Points of a rolling sweep and their rays' origins are moved there from where the lidar truly
+    /// was at their own time, unless its `deskew` is off: then they are as measured.
     pub fn points(&self, sweep: usize) -> PointCloud<PointLabel> {
+        self.points_of(sweep, &self.returns(sweep))
+    }
+
+    /// The points of a sweep whose returns are known already.
+    pub(crate) fn points_of(&self, sweep: usize, returns: &[Return]) -> PointCloud<PointLabel> {
         let (lidar, key) = (self.lidar(sweep), self.sweeps[sweep]);
         let sweep_from_world = lidar.world_from_lidar(&self.world, key.time).inverse();
+        let together = |a: &Return, b: &Return| a.time == b.time || !lidar.deskew;
         let mut cloud = PointCloud::with_origins(Vec::new());
-        for shots in self.returns(sweep).chunk_by(|a, b| a.time == b.time) {
-            let now_from_then = if shots[0].time == key.time {
+        for shots in returns.chunk_by(together) {
+            let now_from_then = if shots[0].time == key.time || !lidar.deskew {
                 nalgebra::one()
             } else {
                 sweep_from_world * lidar.world_from_lidar(&self.world, shots[0].time)
@@ -96,10 +101,16 @@ impl Drive {
             let origin = (cloud.origins.len() - 1) as u32;
             for found in shots {
                 let position: Point3<f64> = now_from_then * found.position_m;
-                cloud.push(position, self.labels.of(found.hit.what), origin);
+                cloud.push(position, self.logged_label(sweep, found), origin);
             }
         }
         cloud
+    }
+
+    /// All exposures of a camera, as logged.
+    pub fn exposures(&self, camera: usize) -> Vec<Exposure> {
+        let times = self.world.cameras[camera].clock.ticks(self.world.duration_s);
+        times.map(|time| exposure(&self.world, &self.poses, camera, time)).collect()
     }
 
     /// The number of a sweep of the scene, by its time and lidar.
@@ -118,9 +129,11 @@ impl Drive {
         self.scene.keyframes.iter().find(|keyframe| keyframe.time == time)
     }
 
-    /// When a mover stands where its annotated box says, for a keyframe: seconds.
-    pub fn mover_time_s(&self, keyframe: &Keyframe, _mover: usize) -> f64 {
-        keyframe.time.seconds_since(Timestamp(0))
+    /// When a mover stands where an annotator without jitter draws its box at a keyframe: seconds.
+    ///
+    /// For sweeps that are no keyframe of the scene: their own time.
+    pub fn mover_time_s(&self, keyframe: &Keyframe, mover: usize) -> f64 {
+        self.sightings.box_time(keyframe.time, mover).seconds_since(Timestamp(0))
     }
 
     /// The true world of a keyframe: the ego at its time, each mover at [`Self::mover_time_s`].
@@ -129,156 +142,101 @@ impl Drive {
         Instant::new(&self.world, time_s, |mover| self.mover_time_s(keyframe, mover))
     }
 
-    /// What a return from a part of the world is labelled.
+    /// The track that a mover of the world is in the scene; none if it has no box there.
+    pub fn track_of(&self, mover: usize) -> Option<TrackId> {
+        self.tracks[mover]
+    }
+
+    /// What a part of the world truly is.
     pub fn label_of(&self, what: What) -> PointLabel {
         self.labels.of(what)
     }
 
-    /// A camera's mounting as the log has it, by its number in the scene.
-    pub fn ego_from_camera(&self, camera: usize) -> Pose {
-        self.world.cameras[camera].ego_from_camera
+    /// The raw label of a point of a part of the world that is logged with a label; none if it is
+    /// unlabelled.
+    pub fn raw_label(&self, what: What, logged: PointLabel) -> Option<&str> {
+        match logged {
+            PointLabel::Unlabelled => None,
+            PointLabel::Class(class) if logged != self.label_of(what) => {
+                self.labels.raw_name(class)
+            }
+            PointLabel::Class(_) | PointLabel::Ignored => Some(self.world.class_of(what)),
+        }
     }
 
-    /// The ego's pose at a time as the log has it.
-    pub fn logged_ego(&self, time: Timestamp) -> Pose {
-        self.world.world_from_ego(time.seconds_since(Timestamp(0)))
+    pub(crate) fn colour(&self, class: ClassId) -> [u8; 3] {
+        self.labels.colour(class)
     }
 
     fn lidar(&self, sweep: usize) -> &Lidar {
         &self.world.lidars[self.sweeps[sweep].lidar]
     }
-}
 
-impl Labels {
-    fn new(world: &World, taxonomy: &Taxonomy) -> Result<Self, Fault> {
-        let label = |key: &str, raw: &str| match taxonomy.points.get(raw) {
-            Some(Meaning::Class(class)) => Ok(PointLabel::Class(*class)),
-            Some(Meaning::Ignore) => Ok(PointLabel::Ignored),
-            None => Err(unknown(key, "a point label of the taxonomy", raw)),
-        };
-        Ok(Self {
-            ground: each("ground.bands", &world.ground.bands, |band| label("class", &band.class))?,
-            statics: each("static", &world.static_classes, |class| label("class", class))?,
-            movers: world
-                .movers
-                .iter()
-                .map(|mover| label(&format!("mover {}.category", mover.name), &mover.category))
-                .collect::<Result<_, Fault>>()?,
-            ego: match &world.ego.body {
-                Some(body) => label("ego.body.class", &body.class)?,
-                None => PointLabel::Ignored,
-            },
-        })
-    }
-
-    fn of(&self, what: What) -> PointLabel {
-        match what {
-            What::Ground(at) => self.ground[at],
-            What::Static(at) => self.statics[at],
-            What::Mover(at) => self.movers[at],
-            What::Ego => self.ego,
+    /// A return's label as the annotator gives it.
+    fn logged_label(&self, sweep: usize, found: &Return) -> PointLabel {
+        match self.labels.of(found.hit.what) {
+            _ if !self.scene.sweeps[sweep].labelled => PointLabel::Unlabelled,
+            PointLabel::Class(class) => PointLabel::Class(self.logged_class(sweep, found, class)),
+            label => label,
         }
     }
-}
 
-fn unknown(key: &str, expected: &str, raw: &str) -> Fault {
-    Fault::new("world", key, expected, format!("`{raw}`"))
-}
-
-/// Every sweep of the drive, ordered by (time, lidar).
-fn sweep_keys(world: &World) -> Vec<SweepKey> {
-    let of_lidar = |(lidar, sensor): (usize, &Lidar)| {
-        let ticks = sensor.clock.ticks(world.duration_s).enumerate();
-        ticks.map(move |(number, time)| SweepKey { time, lidar, number })
-    };
-    let mut keys: Vec<_> = world.lidars.iter().enumerate().flat_map(of_lidar).collect();
-    keys.sort();
-    keys
-}
-
-fn header(world: &World, key: &SweepKey) -> SweepHeader {
-    let lidar = &world.lidars[key.lidar];
-    let source_id = format!("{}-{:06}", lidar.name, key.number);
-    SweepHeader {
-        time: key.time,
-        lidar: lidar.name.clone(),
-        file: source_id.clone(),
-        source_id,
-        world_from_ego: world.world_from_ego(key.time.seconds_since(Timestamp(0))),
-        ego_from_lidar: lidar.ego_from_lidar,
-        labelled: true,
+    fn logged_class(&self, sweep: usize, found: &Return, class: ClassId) -> ClassId {
+        let share = self.world.annotator.mislabelled_points;
+        if share == 0.0 {
+            return class;
+        }
+        let chance = self.lidar(sweep).chance(&self.world, self.sweeps[sweep].number, found);
+        let mistaken = chance.uniform(3) < share;
+        if mistaken { self.labels.mistaken_for(class, chance.uniform(4)) } else { class }
     }
 }
 
-/// The lidar that keyframes refer to (labels.md section 2).
-fn reference_lidar(world: &World) -> usize {
-    let named = |name: &str| world.lidars.iter().position(|lidar| lidar.name == name);
-    named("LIDAR_TOP").or_else(|| named("TOP")).unwrap_or(0)
+fn headers(
+    world: &World,
+    poses: &LoggedPoses,
+    sweeps: &[SweepKey],
+    keyframes: &[SweepKey],
+) -> Vec<SweepHeader> {
+    let header = |key: &SweepKey| {
+        let name = &world.lidars[key.lidar].name;
+        let source_id = format!("{name}-{:06}", key.number);
+        SweepHeader {
+            time: key.time,
+            lidar: name.clone(),
+            file: source_id.clone(),
+            source_id,
+            world_from_ego: poses.world_from_ego(world, key.time),
+            ego_from_lidar: poses.ego_from_lidar[key.lidar],
+            labelled: match world.annotator.point_labels {
+                LabelledSweeps::Keyframes => keyframes.binary_search(key).is_ok(),
+                LabelledSweeps::All => true,
+                LabelledSweeps::None => false,
+            },
+        }
+    };
+    sweeps.iter().map(header).collect()
 }
 
-/// Every so many-th sweep of the reference lidar, with the exposures nearest to it.
-fn keyframes(world: &World, sweeps: &[SweepKey]) -> Result<Vec<Keyframe>, Fault> {
-    let reference = reference_lidar(world);
-    let rate_hz = world.lidars[reference].clock.rate_hz();
-    let stride = (rate_hz / world.keyframe_hz).round();
-    let whole = stride >= 1.0 && (stride * world.keyframe_hz / rate_hz - 1.0).abs() < 1e-6;
-    let expected = format!("a whole part of the reference lidar's {rate_hz} Hz");
-    need("keyframe_hz", whole, &expected, world.keyframe_hz)?;
-    let is_key =
-        |key: &SweepKey| key.lidar == reference && key.number.is_multiple_of(stride as usize);
-    let exposures = exposure_times(world);
-    let keyframe = |(sweep, key): (usize, &SweepKey)| Keyframe {
+fn logged_keyframes(
+    world: &World,
+    poses: &LoggedPoses,
+    sweeps: &[SweepKey],
+    keyframes: &[SweepKey],
+) -> Vec<Keyframe> {
+    let times = exposure_times(world);
+    let keyframe = |key: &SweepKey| Keyframe {
         token: key.time.0.to_string(),
         time: key.time,
-        sweep,
-        exposures: exposures_near(world, &exposures, key.time),
+        sweep: sweeps.partition_point(|sweep| sweep < key),
+        exposures: nearest_exposures(&times, key.time)
+            .map(|(camera, time)| exposure(world, poses, camera, time))
+            .collect(),
     };
-    Ok(sweeps.iter().enumerate().filter(|(_, key)| is_key(key)).map(keyframe).collect())
+    keyframes.iter().map(keyframe).collect()
 }
 
-fn exposure_times(world: &World) -> Vec<Vec<Timestamp>> {
-    world.cameras.iter().map(|camera| camera.clock.ticks(world.duration_s).collect()).collect()
-}
-
-/// Of each camera the exposure nearest to a time, the earlier on ties, if it is near enough.
-fn exposures_near(world: &World, times: &[Vec<Timestamp>], time: Timestamp) -> Vec<Exposure> {
-    let of_camera = |(camera, times): (usize, &Vec<Timestamp>)| {
-        let next = times.partition_point(|known| *known < time);
-        let around = &times[next.saturating_sub(1)..times.len().min(next + 1)];
-        let nearest = *around
-            .iter()
-            .min_by(|a, b| a.seconds_apart(time).total_cmp(&b.seconds_apart(time)))?;
-        let seconds = nearest.seconds_since(Timestamp(0));
-        let world_from_camera =
-            world.world_from_ego(seconds) * world.cameras[camera].ego_from_camera;
-        (nearest.seconds_apart(time) <= EXPOSURE_WITHIN_S).then_some(Exposure {
-            camera,
-            time: nearest,
-            world_from_camera,
-        })
-    };
-    times.iter().enumerate().filter_map(of_camera).collect()
-}
-
-/// Every mover's true boxes at the keyframes.
-fn tracks(
-    world: &World,
-    taxonomy: &Taxonomy,
-    keyframes: &[Keyframe],
-) -> Result<Vec<BoxTrack>, Fault> {
-    let track = |(at, mover): (usize, &crate::Mover)| {
-        let key = format!("mover {}.category", mover.name);
-        let meaning = taxonomy.boxes.get(&mover.category).copied();
-        let box_at =
-            |time: Timestamp| mover.box_at(time.seconds_since(Timestamp(0)), &world.ground);
-        Ok(BoxTrack {
-            id: TrackId(at as u16 + 1),
-            source_id: mover.name.clone(),
-            category: mover.category.clone(),
-            meaning: meaning
-                .ok_or_else(|| unknown(&key, "a box category of the taxonomy", &mover.category))?,
-            boxes: keyframes.iter().map(|key| (key.time, box_at(key.time))).collect(),
-        })
-    };
-    world.movers.iter().enumerate().map(track).collect()
+fn track_named(scene: &Scene, name: &str) -> Option<TrackId> {
+    let at = scene.tracks.binary_search_by(|track| track.source_id.as_str().cmp(name)).ok()?;
+    Some(scene.tracks[at].id)
 }

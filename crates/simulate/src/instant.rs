@@ -43,6 +43,15 @@ impl<'w> Instant<'w> {
             let world_from_body = world.world_from_ego(time_s) * ego_from_body;
             Body::new(shape.clone(), world_from_body, What::Ego)
         });
+        Self::with(world, mover_time_s, ego)
+    }
+
+    /// The world without the ego's own body, each mover at its own time, seconds.
+    pub(crate) fn without_ego(world: &'w World, mover_time_s: impl Fn(usize) -> f64) -> Self {
+        Self::with(world, mover_time_s, None)
+    }
+
+    fn with(world: &'w World, mover_time_s: impl Fn(usize) -> f64, ego: Option<Body>) -> Self {
         let movers =
             (0..world.movers.len()).flat_map(|at| mover_bodies(world, at, mover_time_s(at)));
         Self { world, moving: Bodies::new(movers.chain(ego).collect()) }

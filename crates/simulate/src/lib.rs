@@ -46,7 +46,9 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod annotator;
 mod bodies;
+mod body_mask;
 mod camera;
 mod check;
 mod clip;
@@ -57,13 +59,17 @@ mod ego;
 mod ground;
 mod hull;
 mod instant;
+mod labels;
 mod lidar;
 mod mesh;
 mod mover;
 mod noise;
+mod palette;
 mod pattern;
 mod ray;
+mod render;
 mod rotation;
+mod schedule;
 mod shape;
 mod swing;
 mod towed;
@@ -72,6 +78,7 @@ mod world;
 mod world_file;
 mod write;
 
+pub use annotator::{Annotator, BoxTime, LabelledSweeps, LoggedPoses, Unboxed};
 pub use camera::WorldCamera;
 pub use clock::Clock;
 pub use drive::Drive;
@@ -80,8 +87,10 @@ pub use ground::{Band, Ground};
 pub use instant::{Hit, Instant, What};
 pub use lidar::{Lidar, Return};
 pub use mover::Mover;
+pub use palette::class_colour;
 pub use pattern::{Beams, Pattern};
 pub use ray::{Impact, Ray};
+pub use render::{ClassImage, NO_CLASS, render};
 pub use shape::{Shape, ShapeFile};
 pub use swing::Swing;
 pub use trajectory::{Place, Trajectory, Waypoint};

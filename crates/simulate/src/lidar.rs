@@ -29,6 +29,12 @@ pub struct LidarFile {
     dropout: f64,
     #[serde(default)]
     rolling: bool,
+    #[serde(default = "yes")]
+    deskew: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// A lidar of a world.
@@ -50,6 +56,9 @@ pub struct Lidar {
     pub dropout: f64,
     /// Whether each shot has its own time; if not, all are taken when the sweep begins.
     pub rolling: bool,
+    /// Whether the recorder moves the points of a rolling sweep to where the lidar stood at the
+    /// sweep's time; if not, they are logged as if all were measured there, as nuScenes does.
+    pub deskew: bool,
 }
 
 /// One return.
@@ -85,6 +94,7 @@ impl TryFrom<LidarFile> for Lidar {
             range_noise_m: file.range_noise_m,
             dropout: file.dropout,
             rolling: file.rolling,
+            deskew: file.deskew,
         })
     }
 }
@@ -115,12 +125,14 @@ impl Lidar {
     /// The returns of a sweep as measured, shot by shot. Parallel over shots; the same on any
     /// number of threads.
     pub fn sweep(&self, world: &World, sweep: usize) -> Vec<Return> {
-        let number = world.lidar_number(&self.name);
-        let measure = |found: Return| {
-            let ray = found.shot * self.pattern.rings() + found.ring;
-            self.measure(found, &Chance::new(world.seed, number, sweep, ray))
-        };
+        let measure = |found: Return| self.measure(found, &self.chance(world, sweep, &found));
         self.true_sweep(world, sweep).into_iter().filter_map(measure).collect()
+    }
+
+    /// The chance of a ray of a sweep. Draws 0 to 2 are the sensor's own.
+    pub(crate) fn chance(&self, world: &World, sweep: usize, found: &Return) -> Chance {
+        let ray = found.shot * self.pattern.rings() + found.ring;
+        Chance::new(world.seed, world.lidar_number(&self.name), sweep, ray)
     }
 
     fn fire(&self, world: &World, instant: &Instant, sweep: usize, shot: usize) -> Vec<Return> {

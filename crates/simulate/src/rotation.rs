@@ -41,6 +41,12 @@ pub(crate) fn yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> UnitQuaternion<
     about(2, yaw) * about(1, pitch) * about(0, roll)
 }
 
+/// A turn about a unit vector, radians.
+pub(crate) fn about_axis(axis: &Vector3<f64>, angle_rad: f64) -> UnitQuaternion<f64> {
+    let (sin, cos) = libm::sincos(angle_rad / 2.0);
+    UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, axis * sin))
+}
+
 fn about(axis: usize, angle_rad: f64) -> UnitQuaternion<f64> {
     let (sin, cos) = libm::sincos(angle_rad / 2.0);
     let mut axial = Vector3::zeros();

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::Point3;
 use occlabel_core::{Fault, Pose, Timestamp};
 
+use crate::annotator::Annotator;
 use crate::bodies::{Bodies, Body};
 use crate::camera::WorldCamera;
 use crate::check::{each, inside, need, within};
@@ -45,6 +46,8 @@ pub struct World {
     pub lidars: Vec<Lidar>,
     /// The cameras in byte order of their names.
     pub cameras: Vec<WorldCamera>,
+    /// What becomes of the drive on its way into a log.
+    pub annotator: Annotator,
     pub(crate) standing: Bodies,
     pub(crate) ego_body: Option<(Arc<Shape>, Pose)>,
 }
@@ -123,7 +126,9 @@ fn build(file: WorldFile) -> Result<World, Fault> {
         ground: file.ground,
         static_classes,
         ego: file.ego,
+        annotator: file.annotator,
     };
+    inside("annotator", world.annotator.check(&world.movers))?;
     check_sight(&world).map(|()| world)
 }
 

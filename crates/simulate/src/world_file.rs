@@ -6,6 +6,7 @@ use nalgebra::{Translation3, Vector3};
 use occlabel_core::{Fault, Pose};
 use serde::Deserialize;
 
+use crate::annotator::Annotator;
 use crate::camera::CameraFile;
 use crate::check::{inside, lengths, metres, within};
 use crate::ego::Ego;
@@ -41,6 +42,8 @@ pub(crate) struct WorldFile {
     pub(crate) lidars: Vec<LidarFile>,
     #[serde(default, rename = "camera")]
     pub(crate) cameras: Vec<CameraFile>,
+    #[serde(default)]
+    pub(crate) annotator: Annotator,
 }
 
 /// Something that stands: `[[static]]`.

@@ -200,7 +200,8 @@ fn rules() -> Rules {
 
 #[test]
 fn a_labelled_drive_has_its_wall_where_it_is_and_no_trail() {
-    let (drive, rules) = (drive(TINY), rules());
+    let every_sweep = format!("{TINY}\n[annotator]\npoint_labels = \"all\"\n");
+    let (drive, rules) = (drive(&every_sweep), rules());
     let scene = drive.scene();
     let read = |header: &_| Ok::<_, Fault>(drive.sweep_number(header).map(|at| drive.points(at)));
     let aggregated = aggregate_scene(scene, &rules, read, |_| ()).unwrap();

@@ -12,7 +12,7 @@ use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, SceneSource};
 use occlabel_pipeline::{
     Autos, Config, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset, shipped_taxonomy,
 };
-use occlabel_simulate::{Drive, Images, Output, World, write_nuscenes};
+use occlabel_simulate::{Drive, Images, Output, World, render, write_nuscenes};
 use tempfile::TempDir;
 
 const TINY: &str = include_str!("tiny.toml");
@@ -167,10 +167,7 @@ fn points_and_labels_are_those_of_the_drive() {
     let (mut points, mut labelled) = (0, 0);
     for (sweep, header) in log.load("tiny").unwrap().sweeps.iter().enumerate() {
         let read = log.read_sweep(header).unwrap().cloud;
-        let mut told = as_logged(drive.points(sweep));
-        if !header.labelled {
-            told.labels.fill(occlabel_core::PointLabel::Unlabelled);
-        }
+        let told = as_logged(drive.points(sweep));
         assert_eq!(read, told, "sweep {sweep}");
         points += read.len();
         labelled += usize::from(header.labelled);
@@ -207,11 +204,7 @@ fn labels_of_the_log_are_those_of_the_drive() {
     let (read, rules) = (log.load("tiny").unwrap(), rules());
     let from_log = labels(&read, &rules, |header| log.read_sweep(header).unwrap().cloud);
     let in_memory = labels(drive.scene(), &rules, |header| {
-        let mut cloud = as_logged(drive.points(drive.sweep_number(header).unwrap()));
-        if !header.labelled {
-            cloud.labels.fill(occlabel_core::PointLabel::Unlabelled);
-        }
-        cloud
+        as_logged(drive.points(drive.sweep_number(header).unwrap()))
     });
     let occupied = in_memory.semantics.values().iter().filter(|class| **class != 17).count();
     assert!(occupied > 500, "{occupied}");
@@ -250,6 +243,37 @@ fn the_same_bytes_on_any_number_of_threads() {
     let alone = on(1);
     assert!(alone.len() > 50, "{} files", alone.len());
     assert!(alone == on(2));
+}
+
+#[test]
+fn pictures_and_masks_stand_beside_each_other() {
+    let drive = drive(&format!("{}{CAMERAS}", &TINY[..TINY.find("[[camera]]").unwrap()]));
+    let folder = tempfile::tempdir().unwrap();
+    let written = |images, at: &str| {
+        let output = Output::create(&folder.path().join(at)).unwrap();
+        let drives = std::slice::from_ref(&drive);
+        let (written, last) = write_nuscenes(drives, &taxonomy(), images, &output).unwrap();
+        output.finish(last).unwrap();
+        written.images
+    };
+    let all: usize = (0..4).map(|camera| drive.exposures(camera).len()).sum();
+    let some = written(Images::Keyframes, "some");
+    assert!(some >= 17 && all > some, "{some} of {all}");
+    assert_eq!((written(Images::None, "none"), written(Images::All, "all")), (0, all));
+    let files = files(&folder.path().join("all"));
+    let mut seen = 0;
+    for exposure in (0..4).flat_map(|camera| drive.exposures(camera)) {
+        let camera = &drive.scene().cameras[exposure.camera].name;
+        let name = format!("{camera}/tiny__{camera}__{}.png", exposure.time.0 / 1000);
+        let told = render(&drive, &exposure);
+        let picture =
+            ["samples", "sweeps"].iter().find_map(|at| files.get(&format!("{at}/{name}")));
+        let picture = image::load_from_memory(picture.unwrap()).unwrap().into_rgb8();
+        let mask = image::load_from_memory(&files[&format!("masks/{name}")]).unwrap().into_luma8();
+        assert!(picture.into_raw() == told.rgb && mask.into_raw() == told.classes, "{name}");
+        seen += usize::from(told.classes.iter().any(|class| *class != u8::MAX));
+    }
+    assert_eq!(seen, all);
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn logged() -> (TempDir, PathBuf, Drive) {
     let world = World::parse(TINY, "tiny.toml").unwrap();
     let drive = Drive::new(world, &taxonomy()).unwrap();
     let output = Output::create(folder.path()).unwrap();
-    let (written, last) = write_semantickitti(&drive, &taxonomy(), &output).unwrap();
+    let (written, last) = write_semantickitti(&drive, &output).unwrap();
     assert_eq!((written.sweeps, written.keyframes), (21, 5));
     output.finish(last).unwrap();
     let sequence = folder.path().join("sequences/00");

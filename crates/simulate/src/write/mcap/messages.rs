@@ -5,6 +5,7 @@ use occlabel_core::camera::{CameraModel, Ocam};
 use occlabel_core::{Box3, BoxTrack, NamedCamera, Pose, SweepHeader, Timestamp};
 
 use crate::write::points::LoggedPoint;
+use crate::write::raw_names::RawNames;
 
 use super::WORLD;
 use super::wire::Wire;
@@ -26,7 +27,7 @@ pub(super) fn transform(
 }
 
 /// A sweep's points in the frame of its lidar.
-pub(super) fn point_cloud(header: &SweepHeader, points: &[LoggedPoint]) -> Wire {
+pub(super) fn point_cloud(header: &SweepHeader, points: &[LoggedPoint], names: &RawNames) -> Wire {
     let rolling = points.iter().any(|point| point.time != header.time);
     let mut layout = Layout::default();
     ["x", "y", "z"].into_iter().for_each(|name| layout.add(name, FLOAT32, 4));
@@ -40,7 +41,7 @@ pub(super) fn point_cloud(header: &SweepHeader, points: &[LoggedPoint]) -> Wire 
     let bytes = points.iter().flat_map(|point| {
         let mut bytes: Vec<u8> = point.position_m.iter().flat_map(|m| m.to_le_bytes()).collect();
         bytes.extend(point.ring.to_le_bytes());
-        bytes.extend(header.labelled.then_some(point.raw));
+        bytes.extend(header.labelled.then(|| names.number(point.label)));
         let offset_ns = (point.time.0 - header.time.0) as i32;
         bytes.extend(rolling.then_some(offset_ns.to_le_bytes()).into_iter().flatten());
         bytes
@@ -107,6 +108,12 @@ fn distortion(model: &CameraModel) -> (&'static str, Vec<f64>) {
 fn ocam_numbers(ocam: &Ocam) -> Vec<f64> {
     let fixed = ocam.centre().into_iter().chain(ocam.affine()).chain([ocam.max_angle_rad()]);
     fixed.chain(ocam.polynomial().iter().copied()).collect()
+}
+
+/// A PNG of a camera.
+pub(super) fn image(time: Timestamp, camera: &str, png: &[u8]) -> Wire {
+    let stamped = Wire::default().message(1, &timestamp(time));
+    stamped.data(2, png).text(3, "png").text(4, camera)
 }
 
 /// All boxes that stand at a time, in place of all that stood before.

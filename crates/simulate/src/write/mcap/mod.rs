@@ -5,6 +5,7 @@
 //!                                             base_link -> sensors once, at the drive's begin
 //!   /<lidar>/points        PointCloud         x y z, ring; label if labelled; offset_ns if rolling
 //!   /<camera>/calibration  CameraCalibration  with every exposure
+//!   /<camera>/image        CompressedImage    PNG; /<camera>/body_mask where there is one
 //!   /annotations           SceneUpdate        all boxes of a keyframe: cubes in map, the track's
 //!                                             name as id, its category as metadata
 //! ```
@@ -18,11 +19,13 @@ mod recorder;
 mod schemas;
 mod wire;
 
+use image::ExtendedColorType;
 use occlabel_core::{Exposure, Fault, Taxonomy, Timestamp};
 
-use crate::Drive;
+use crate::{Drive, render};
 
 use super::files::Output;
+use super::png::{mask_png, png};
 use super::points::logged_points;
 use super::raw_names::RawNames;
 use super::written::{Images, Written};
@@ -72,7 +75,7 @@ enum Event {
 impl DriveLog<'_> {
     fn record(&mut self) -> Result<Written, Fault> {
         let scene = self.drive.scene();
-        self.to.name_labels(self.names.names())?;
+        self.to.name_labels(self.names.all())?;
         let events = events(self.drive, self.images);
         let mut written = Written {
             scenes: 1,
@@ -96,42 +99,50 @@ impl DriveLog<'_> {
     }
 
     fn mount_sensors(&mut self, time: Timestamp) -> Result<(), Fault> {
-        let scene = self.drive.scene();
-        for lidar in &self.drive.world().lidars {
-            if let Some(sweep) = scene.sweeps.iter().find(|sweep| sweep.lidar == lidar.name) {
-                let message = messages::transform(time, EGO, &lidar.name, &sweep.ego_from_lidar);
-                self.to.write("/tf", "FrameTransform", time, &message)?;
-            }
-        }
-        for (at, camera) in scene.cameras.iter().enumerate() {
-            let ego_from_camera = self.drive.ego_from_camera(at);
-            let message = messages::transform(time, EGO, &camera.name, &ego_from_camera);
+        let (world, poses) = (self.drive.world(), self.drive.poses());
+        let lidars = world.lidars.iter().map(|lidar| &lidar.name).zip(&poses.ego_from_lidar);
+        let cameras = self.drive.scene().cameras.iter().map(|camera| &camera.name);
+        for (name, ego_from_sensor) in lidars.chain(cameras.zip(&poses.ego_from_camera)) {
+            let message = messages::transform(time, EGO, name, ego_from_sensor);
             self.to.write("/tf", "FrameTransform", time, &message)?;
         }
         Ok(())
     }
 
     fn place_ego(&mut self, time: Timestamp) -> Result<(), Fault> {
-        let world_from_ego = self.drive.logged_ego(time);
+        let world_from_ego = self.drive.poses().world_from_ego(self.drive.world(), time);
         let message = messages::transform(time, WORLD, EGO, &world_from_ego);
         self.to.write("/tf", "FrameTransform", time, &message)
     }
 
     fn sweep(&mut self, sweep: usize, written: &mut Written) -> Result<(), Fault> {
         let header = &self.drive.scene().sweeps[sweep];
-        let points = logged_points(self.drive, &self.names, sweep);
-        let message = messages::point_cloud(header, &points);
+        let points = logged_points(self.drive, sweep);
+        let message = messages::point_cloud(header, &points, &self.names);
         written.points += points.len();
         written.labelled += usize::from(header.labelled);
         let topic = format!("/{}/points", header.lidar);
         self.to.write(&topic, "PointCloud", header.time, &message)
     }
 
-    fn exposure(&mut self, exposure: &Exposure, _written: &mut Written) -> Result<(), Fault> {
+    fn exposure(&mut self, exposure: &Exposure, written: &mut Written) -> Result<(), Fault> {
         let named = &self.drive.scene().cameras[exposure.camera];
         let (name, time) = (&named.name, exposure.time);
         let calibration = messages::calibration(time, named);
-        self.to.write(&format!("/{name}/calibration"), "CameraCalibration", time, &calibration)
+        self.to.write(&format!("/{name}/calibration"), "CameraCalibration", time, &calibration)?;
+        if let Some(mask) = &named.camera.body_mask {
+            let message = messages::image(time, name, &mask_png(mask));
+            self.to.write(&format!("/{name}/body_mask"), "CompressedImage", time, &message)?;
+        }
+        if self.images == Images::None {
+            return Ok(());
+        }
+        let picture = render(self.drive, exposure);
+        let size = [picture.width, picture.height];
+        let message =
+            messages::image(time, name, &png(&picture.rgb, size, ExtendedColorType::Rgb8));
+        written.images += 1;
+        self.to.write(&format!("/{name}/image"), "CompressedImage", time, &message)
     }
 
     /// Gives the number of boxes.

@@ -1,13 +1,12 @@
 //! Sensors of a scene, and how they are mounted.
 
-use image::ExtendedColorType;
-use occlabel_core::camera::{BodyMask, CameraModel};
+use occlabel_core::camera::CameraModel;
 use occlabel_core::{Camera, Fault, Pose};
 use serde_json::{Value, json};
 
 use crate::Drive;
 use crate::write::files::Output;
-use crate::write::png::png;
+use crate::write::png::mask_png;
 
 use super::tables::{Tables, rotation, translation};
 
@@ -22,15 +21,13 @@ pub(super) fn push_calibrations(
     output: &Output,
 ) -> Result<(), Fault> {
     let scene = drive.scene();
-    for lidar in &drive.world().lidars {
-        let Some(sweep) = scene.sweeps.iter().find(|sweep| sweep.lidar == lidar.name) else {
-            continue;
-        };
-        let row = mounting(&scene.name, &lidar.name, &sweep.ego_from_lidar);
+    let (lidars, poses) = (&drive.world().lidars, drive.poses());
+    for (lidar, ego_from_lidar) in lidars.iter().zip(&poses.ego_from_lidar) {
+        let row = mounting(&scene.name, &lidar.name, ego_from_lidar);
         push_sensor(tables, &lidar.name, "lidar", row)?;
     }
-    for (at, named) in scene.cameras.iter().enumerate() {
-        let mut row = mounting(&scene.name, &named.name, &drive.ego_from_camera(at));
+    for (named, ego_from_camera) in scene.cameras.iter().zip(&poses.ego_from_camera) {
+        let mut row = mounting(&scene.name, &named.name, ego_from_camera);
         add_optics(&mut row, &named.camera.model);
         add_mask(&mut row, &scene.name, &named.name, &named.camera, output)?;
         push_sensor(tables, &named.name, "camera", row)?;
@@ -90,12 +87,4 @@ fn add_mask(
     output.write(&file, &mask_png(mask))?;
     row["mask"] = json!(file);
     Ok(())
-}
-
-/// A mask as an 8-bit PNG: 255 on the vehicle's own body.
-pub(crate) fn mask_png(mask: &BodyMask) -> Vec<u8> {
-    let (width, height) = (mask.width(), mask.height());
-    let row = |row| (0..width).map(move |column| 255 * u8::from(mask.covers(column, row)));
-    let pixels: Vec<u8> = (0..height).flat_map(row).collect();
-    png(&pixels, [width, height], ExtendedColorType::L8)
 }

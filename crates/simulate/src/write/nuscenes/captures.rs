@@ -56,10 +56,10 @@ pub(super) fn write_sweeps(
     let mut captures: BTreeMap<&str, Vec<Capture>> = BTreeMap::new();
     for (sweep, header) in scene.sweeps.iter().enumerate() {
         let capture = capture(drive, header, keys.get(&sweep).copied());
-        let points = logged_points(drive, names, sweep);
+        let points = logged_points(drive, sweep);
         output.write(&capture.file, &cloud_bytes(&points))?;
         if header.labelled {
-            write_labels(&scene.name, &capture, &points, tables, output)?;
+            write_labels(&scene.name, &capture, &label_bytes(&points, names), tables, output)?;
         }
         swept.points += points.len();
         if scene.keyframes.iter().any(|keyframe| keyframe.sweep == sweep) {
@@ -168,17 +168,20 @@ fn cloud_bytes(points: &[LoggedPoint]) -> Vec<u8> {
     columns.flat_map(f32::to_le_bytes).collect()
 }
 
+fn label_bytes(points: &[LoggedPoint], names: &RawNames) -> Vec<u8> {
+    points.iter().map(|point| names.number(point.label)).collect()
+}
+
 fn write_labels(
     scene: &str,
     capture: &Capture,
-    points: &[LoggedPoint],
+    labels: &[u8],
     tables: &mut Tables,
     output: &Output,
 ) -> Result<(), Fault> {
     let token = capture.token(scene);
     let file = format!("lidarseg/{VERSION}/{token}_lidarseg.bin");
-    let labels: Vec<u8> = points.iter().map(|point| point.raw).collect();
-    output.write(&file, &labels)?;
+    output.write(&file, labels)?;
     // nuScenes gives the row the token of the sample_data that it labels.
     let row = json!({ "token": token, "sample_data_token": token, "filename": file });
     tables.push("lidarseg", &row)

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use image::ExtendedColorType;
 use occlabel_core::{Exposure, Fault, Timestamp};
 
-use crate::Drive;
 use crate::write::exposures::exposures;
 use crate::write::files::Output;
+use crate::write::png::png;
 use crate::write::written::Images;
+use crate::{ClassImage, Drive, render};
 
 use super::captures::{Capture, capture_file, push_captures};
 use super::scene::{sample_at, sample_token};
@@ -24,17 +26,26 @@ pub(super) fn write_images(
     let mut count = 0;
     for camera in 0..scene.cameras.len() {
         let keys = key_exposures(drive, camera);
-        let exposures = exposures(drive, camera, images);
-        let captures: Vec<_> =
-            exposures.iter().map(|exposure| capture(drive, exposure, &keys)).collect();
-        push_captures(tables, &scene.name, &captures)?;
-        if images != Images::None {
-            // Pictures are drawn by `render`.
-            let _ = output;
-            count += captures.len();
+        let mut captures = Vec::new();
+        for exposure in exposures(drive, camera, images) {
+            let capture = capture(drive, &exposure, &keys);
+            if images != Images::None {
+                write_pictures(&render(drive, &exposure), &capture.file, output)?;
+                count += 1;
+            }
+            captures.push(capture);
         }
+        push_captures(tables, &scene.name, &captures)?;
     }
     Ok(count)
+}
+
+/// The picture, and beside it what class each pixel is of.
+fn write_pictures(image: &ClassImage, file: &str, output: &Output) -> Result<(), Fault> {
+    let size = [image.width, image.height];
+    let below = file.split_once('/').map_or(file, |(_, below)| below);
+    output.write(file, &png(&image.rgb, size, ExtendedColorType::Rgb8))?;
+    output.write(&format!("masks/{below}"), &png(&image.classes, size, ExtendedColorType::L8))
 }
 
 /// By time: the token of the first keyframe that an exposure serves.
@@ -55,8 +66,7 @@ fn capture(drive: &Drive, exposure: &Exposure, keys: &BTreeMap<Timestamp, String
     let named = &scene.cameras[exposure.camera];
     let key = keys.get(&exposure.time);
     let sample = key.cloned().unwrap_or_else(|| sample_at(drive, exposure.time));
-    let world_from_ego =
-        exposure.world_from_camera * drive.ego_from_camera(exposure.camera).inverse();
+    let world_from_ego = drive.poses().world_from_ego(drive.world(), exposure.time);
     Capture {
         channel: named.name.clone(),
         time: exposure.time,

@@ -24,7 +24,7 @@ pub(super) fn push_shared_rows(
     names: &RawNames,
     output: &Output,
 ) -> Result<(), Fault> {
-    for (index, name) in names.names().iter().enumerate() {
+    for (index, name) in names.all().iter().enumerate() {
         let row = json!({ "token": name, "name": name, "description": "", "index": index });
         tables.push("category", &row)?;
     }

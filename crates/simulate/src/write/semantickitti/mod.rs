@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   sequences/00/velodyne/000000.bin     f32 x, y, z, remission
-//!   sequences/00/labels/000000.label     u32 id | instance << 16, of labelled sweeps only
+//!   sequences/00/labels/000000.label     u32 id | u32::from(instance) << 16, of labelled sweeps only
 //!   sequences/00/poses.txt               camera_0 <- camera_i, 3 x 4 by rows
 //!   sequences/00/calib.txt               Tr: camera <- lidar
 //!   sequences/00/times.txt               seconds of the drive
@@ -15,14 +15,13 @@
 mod ids;
 
 use nalgebra::Matrix4;
-use occlabel_core::{Fault, Pose, SweepHeader, Taxonomy, Timestamp};
+use occlabel_core::{Fault, Pose, SweepHeader, Timestamp};
 
 use crate::Drive;
 use crate::camera::body_from_optical;
 
 use super::files::Output;
 use super::points::{LoggedPoint, logged_points};
-use super::raw_names::RawNames;
 use super::written::Written;
 
 /// The entry that makes the log one.
@@ -32,25 +31,23 @@ const REMISSION: f32 = 0.5;
 /// What never leaves its first place by more is parked, metres.
 const PARKED_M: f64 = 0.1;
 
-/// Writes the sweeps of a drive's reference lidar; the taxonomy is the drive's. To be finished with
-/// the entry that is returned.
+/// Writes the sweeps of a drive's reference lidar. To be finished with the entry that is
+/// returned.
 ///
 /// # Errors
 /// If the drive has no keyframe, or a file cannot be written.
 pub fn write_semantickitti(
     drive: &Drive,
-    taxonomy: &Taxonomy,
     output: &Output,
 ) -> Result<(Written, &'static str), Fault> {
-    let names = RawNames::new(taxonomy)?;
     let sweeps = reference_sweeps(drive)?;
     let moving = moving(drive);
     let mut written = Written { scenes: 1, ..Written::default() };
     for (number, &sweep) in sweeps.iter().enumerate() {
-        let points = logged_points(drive, &names, sweep);
+        let points = logged_points(drive, sweep);
         output.write(&file("velodyne", number, "bin"), &cloud_bytes(&points))?;
         if drive.scene().sweeps[sweep].labelled {
-            let labels = label_bytes(&points, &names, &moving);
+            let labels = label_bytes(&points, drive, &moving);
             output.write(&file("labels", number, "label"), &labels)?;
             written.labelled += 1;
         }
@@ -100,11 +97,11 @@ fn cloud_bytes(points: &[LoggedPoint]) -> Vec<u8> {
     columns.flat_map(f32::to_le_bytes).collect()
 }
 
-fn label_bytes(points: &[LoggedPoint], names: &RawNames, moving: &[bool]) -> Vec<u8> {
+fn label_bytes(points: &[LoggedPoint], drive: &Drive, moving: &[bool]) -> Vec<u8> {
     let label = |point: &LoggedPoint| {
         let moves = point.mover.is_some_and(|mover| moving[mover]);
-        let instance = point.mover.map_or(0, |mover| mover as u32 + 1);
-        u32::from(ids::id(names.name(point.raw), moves)) | instance << 16
+        let instance = point.mover.and_then(|mover| drive.track_of(mover)).map_or(0, |id| id.0);
+        u32::from(ids::id(point.label, moves)) | u32::from(instance) << 16
     };
     points.iter().map(label).flat_map(u32::to_le_bytes).collect()
 }
