@@ -97,6 +97,11 @@ impl Ground {
         -self.plane_of(x_m, 0.0).gap_m(&Point3::new(x_m, y_m, 0.0))
     }
 
+    /// Height of the ground's surface at a place, bands and all, metres.
+    pub fn surface_m(&self, x_m: f64, y_m: f64) -> f64 {
+        self.terrain_m(x_m, y_m) + self.bands[self.band(y_m)].raise_m
+    }
+
     /// The pose of something that stands on the terrain, at the middle between its four feet, which
     /// are `reach_m` ahead, behind, to the left and to the right.
     pub(crate) fn stand(&self, place: &Place, reach_m: [f64; 2]) -> Pose {

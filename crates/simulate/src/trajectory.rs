@@ -113,6 +113,23 @@ impl Trajectory {
         }
     }
 
+    /// The same way from another place on.
+    pub(crate) fn shifted(&self, by_m: [f64; 2]) -> Self {
+        let mut way = self.clone();
+        let places: Vec<&mut Place> = match &mut way {
+            Self::Straight { start, .. }
+            | Self::Turn { start, .. }
+            | Self::Accelerate { start, .. }
+            | Self::Stop { start, .. } => vec![start],
+            Self::Waypoints(points) => points.iter_mut().map(|point| &mut point.place).collect(),
+        };
+        for place in places {
+            place.x_m += by_m[0];
+            place.y_m += by_m[1];
+        }
+        way
+    }
+
     pub(crate) fn check(&self) -> Result<(), Fault> {
         match self {
             Self::Straight { start, speed_mps } => check_start("straight", start, *speed_mps),

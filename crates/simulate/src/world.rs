@@ -7,16 +7,18 @@ use nalgebra::Point3;
 use occlabel_core::{Fault, Pose, Timestamp};
 
 use crate::annotator::Annotator;
-use crate::bodies::{Bodies, Body};
+use crate::bodies::Bodies;
 use crate::camera::WorldCamera;
 use crate::check::{each, inside, need, within};
 use crate::ego::Ego;
 use crate::ground::Ground;
 use crate::instant::{Instant, What};
 use crate::lidar::Lidar;
+use crate::model::with_models;
 use crate::mover::Mover;
 use crate::shape::Shape;
-use crate::world_file::{StaticFile, WorldFile, ego_body};
+use crate::standing::standing;
+use crate::world_file::{WorldFile, ego_body};
 
 /// A trailer's way is known so long beyond the drive's end, for sweeps that begin in it, seconds.
 const BEYOND_S: f64 = 101.0;
@@ -98,8 +100,8 @@ impl World {
 fn read(text: &str) -> Result<WorldFile, Fault> {
     let not_toml =
         |error: toml::de::Error| Fault::new("world", "the file", "TOML", error.message());
-    let document = toml::Deserializer::parse(text).map_err(not_toml)?;
-    serde_path_to_error::deserialize(document).map_err(|error| {
+    let table = with_models(text.parse().map_err(not_toml)?)?;
+    serde_path_to_error::deserialize(table).map_err(|error| {
         let message = error.inner().message().to_owned();
         Fault::new("world", error.path().to_string(), "a world file's key and value", message)
     })
@@ -111,12 +113,12 @@ fn build(file: WorldFile) -> Result<World, Fault> {
     within("keyframe_hz", file.keyframe_hz, 0.01, 1000.0)?;
     inside("ground", file.ground.check())?;
     inside("ego", file.ego.check())?;
-    let static_classes = file.statics.iter().map(|body| body.class.clone()).collect();
+    let (standing, static_classes) = standing(&file.statics, &file.ground)?;
     let world = World {
         movers: movers(&file)?,
         lidars: lidars(&file)?,
         cameras: cameras(&file)?,
-        standing: standing(file.statics)?,
+        standing,
         ego_body: inside("ego.body", ego_body(&file.ego))?,
         name: file.name,
         duration_s: file.duration_s,
@@ -132,24 +134,16 @@ fn build(file: WorldFile) -> Result<World, Fault> {
     check_sight(&world).map(|()| world)
 }
 
-fn standing(statics: Vec<StaticFile>) -> Result<Bodies, Fault> {
-    let mut number = 0..;
-    let bodies = each("static", statics, |body| {
-        let shape = Arc::new(inside("shape", body.shape.try_into())?);
-        let pose: Pose = inside("pose", body.pose.try_into())?;
-        Ok(Body::new(shape, pose, What::Static(number.next().unwrap_or_default())))
-    })?;
-    Ok(Bodies::new(bodies))
-}
-
 fn movers(file: &WorldFile) -> Result<Vec<Mover>, Fault> {
-    let count = file.movers.len();
-    need("mover", count <= usize::from(u16::MAX), "at most 65535", count)?;
     let mut movers: Vec<Mover> = Vec::new();
     for (at, mover) in file.movers.iter().cloned().enumerate() {
-        let built = mover.build(&movers, file.duration_s + BEYOND_S);
-        movers.push(inside(&format!("mover[{at}]"), built)?);
+        let key = format!("mover[{at}]");
+        for copy in inside(&key, mover.copies())? {
+            movers.push(inside(&key, copy.build(&movers, file.duration_s + BEYOND_S))?);
+        }
     }
+    let count = movers.len();
+    need("mover", count <= usize::from(u16::MAX), "at most 65535", count)?;
     in_order("mover", movers, |mover| &mover.name)
 }
 

@@ -8,13 +8,15 @@ use serde::Deserialize;
 
 use crate::annotator::Annotator;
 use crate::camera::CameraFile;
-use crate::check::{inside, lengths, metres, within};
+use crate::check::{angles, each, inside, lengths, metres, need, within};
 use crate::ego::Ego;
 use crate::ground::Ground;
 use crate::lidar::LidarFile;
 use crate::mover::{Mover, Part, Path, Pivot};
+use crate::repeat::RepeatWay;
 use crate::rotation::PoseFile;
 use crate::shape::{Shape, ShapeFile};
+use crate::standing::StaticFile;
 use crate::swing::Swing;
 use crate::towed::{Lengths, Towed};
 use crate::trajectory::Trajectory;
@@ -46,16 +48,6 @@ pub(crate) struct WorldFile {
     pub(crate) annotator: Annotator,
 }
 
-/// Something that stands: `[[static]]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct StaticFile {
-    pub(crate) class: String,
-    #[serde(default)]
-    pub(crate) pose: PoseFile,
-    pub(crate) shape: ShapeFile,
-}
-
 /// Something with a box annotation: `[[mover]]`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -70,6 +62,10 @@ pub(crate) struct MoverFile {
     parts: Vec<PartFile>,
     trajectory: Option<Trajectory>,
     towed: Option<TowedFile>,
+    /// Added to the phase of all its pivots, so that not all people walk in step.
+    #[serde(default)]
+    phase_rad: f64,
+    repeat: Option<RepeatWay>,
 }
 
 /// A rigid piece of a mover: `[[mover.part]]`.
@@ -101,10 +97,24 @@ struct TowedFile {
 }
 
 impl MoverFile {
+    /// The mover as often as it is repeated.
+    pub(crate) fn copies(self) -> Result<Vec<Self>, Fault> {
+        let Some(repeat) = self.repeat else { return Ok(vec![self]) };
+        repeat.check()?;
+        need("repeat", self.towed.is_none(), "a way of its own to repeat", "`towed`")?;
+        let copy = |number| Self {
+            name: repeat.name(&self.name, number),
+            trajectory: self.trajectory.as_ref().map(|way| way.shifted(repeat.offset_m(number))),
+            ..self.clone()
+        };
+        Ok((0..repeat.count).map(copy).collect())
+    }
+
     /// The mover, given those that stand before it in the file and how long its way must be known.
     pub(crate) fn build(self, earlier: &[Mover], until_s: f64) -> Result<Mover, Fault> {
         lengths("size_m", &self.size_m)?;
         metres("lift_m", &[self.lift_m])?;
+        angles("phase_rad", &[self.phase_rad])?;
         let path = path(self.trajectory, self.towed, earlier, until_s)?;
         let parts = match self.parts.is_empty() {
             true => vec![PartFile {
@@ -119,15 +129,15 @@ impl MoverFile {
             category: self.category,
             size_m: Vector3::from(self.size_m),
             lift_m: self.lift_m,
-            parts: crate::check::each("part", parts, PartFile::build)?,
+            parts: each("part", parts, |part| part.build(self.phase_rad))?,
             path,
         })
     }
 }
 
 impl PartFile {
-    fn build(self) -> Result<Part, Fault> {
-        let pivot = self.pivot.map(|pivot| inside("pivot", pivot.build())).transpose()?;
+    fn build(self, phase_rad: f64) -> Result<Part, Fault> {
+        let pivot = self.pivot.map(|pivot| inside("pivot", pivot.build(phase_rad))).transpose()?;
         Ok(Part {
             shape: Arc::new(inside("shape", self.shape.try_into())?),
             mover_from_part: inside("pose", self.pose.try_into())?,
@@ -137,10 +147,12 @@ impl PartFile {
 }
 
 impl PivotFile {
-    fn build(self) -> Result<Pivot, Fault> {
+    fn build(self, phase_rad: f64) -> Result<Pivot, Fault> {
         metres("at_m", &self.at_m)?;
         inside("pitch_rad", self.pitch_rad.check())?;
-        Ok(Pivot { at_m: Vector3::from(self.at_m), pitch: self.pitch_rad })
+        let own = self.pitch_rad;
+        let pitch = Swing { phase_rad: own.phase_rad + phase_rad, ..own };
+        Ok(Pivot { at_m: Vector3::from(self.at_m), pitch })
     }
 }
 
