@@ -22,6 +22,7 @@ mod interrupt;
 mod label;
 mod presets;
 mod progress;
+mod simulate;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -85,6 +86,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Demo(args) => demo::run(args, console),
         Command::Label(args) => label::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
+        Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),
         Command::Completions { shell } => completions::run(shell, console),
         Command::Man => completions::man(console),

@@ -124,7 +124,7 @@ impl TryFrom<ModelFile> for CameraModel {
 }
 
 /// Camera axes (x right, y down, z forward) in body axes (x forward, y left, z up).
-fn body_from_optical() -> Pose {
+pub(crate) fn body_from_optical() -> Pose {
     let rotation = UnitQuaternion::new_unchecked(Quaternion::new(0.5, -0.5, 0.5, -0.5));
     Pose::from_parts(nalgebra::Translation3::identity(), rotation)
 }

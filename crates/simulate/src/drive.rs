@@ -78,11 +78,16 @@ impl Drive {
     /// was at their own time, unless its `deskew` is off: then they are as measured. Boxes stand
     /// where movers truly were either way.
     pub fn points(&self, sweep: usize) -> PointCloud<PointLabel> {
+        self.points_of(sweep, &self.returns(sweep))
+    }
+
+    /// The points of a sweep whose returns are known already.
+    pub(crate) fn points_of(&self, sweep: usize, returns: &[Return]) -> PointCloud<PointLabel> {
         let (lidar, key) = (self.lidar(sweep), self.sweeps[sweep]);
         let sweep_from_world = lidar.world_from_lidar(&self.world, key.time).inverse();
         let together = |a: &Return, b: &Return| a.time == b.time || !lidar.deskew;
         let mut cloud = PointCloud::with_origins(Vec::new());
-        for shots in self.returns(sweep).chunk_by(together) {
+        for shots in returns.chunk_by(together) {
             let now_from_then = if shots[0].time == key.time || !lidar.deskew {
                 nalgebra::one()
             } else {

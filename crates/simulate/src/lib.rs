@@ -84,6 +84,7 @@ mod trajectory;
 mod truth;
 mod world;
 mod world_file;
+mod write;
 
 pub use annotator::{Annotator, BoxTime, LabelledSweeps, Unboxed};
 pub use camera::WorldCamera;
@@ -105,3 +106,4 @@ pub use swing::Swing;
 pub use trajectory::{Place, Trajectory, Waypoint};
 pub use truth::{TrueRays, TruthAt, TruthSettings, dense_ends, keyframe_truth};
 pub use world::World;
+pub use write::{Images, Output, Written, write_mcap, write_nuscenes, write_semantickitti};

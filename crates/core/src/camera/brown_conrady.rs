@@ -37,6 +37,20 @@ impl BrownConrady {
         Ok(Self { intrinsics, distortion: Distortion::new(radial, tangential) })
     }
 
+    /// The pinhole part.
+    pub fn intrinsics(&self) -> &Intrinsics {
+        &self.intrinsics
+    }
+
+    /// The coefficients as [`Self::new`] takes them: 5, or 8 if k4, k5 or k6 is not 0.
+    pub fn coefficients(&self) -> Vec<f64> {
+        let ([k1, k2, k3, k4, k5, k6], [p1, p2]) = self.distortion.coefficients();
+        match [k4, k5, k6] == [0.0; 3] {
+            true => vec![k1, k2, p1, p2, k3],
+            false => vec![k1, k2, p1, p2, k3, k4, k5, k6],
+        }
+    }
+
     pub(super) fn project(&self, point: &Point3<f64>) -> Option<Point2<f64>> {
         if point.z <= 0.0 {
             return None;

@@ -48,6 +48,12 @@ impl Distortion {
         Self { numerator, denominator, p1, p2, limit }
     }
 
+    /// k1..k6 and p1 p2: the inverse of [`Self::new`].
+    pub(super) fn coefficients(&self) -> ([f64; 6], [f64; 2]) {
+        let ([_, k1, k2, k3], [_, k4, k5, k6]) = (self.numerator, self.denominator);
+        ([k1, k2, k3, k4, k5, k6], [self.p1, self.p2])
+    }
+
     /// Where the lens images a plane point; `None` from the radius on where the image folds back.
     pub(super) fn distort(&self, plane: &Point2<f64>) -> Option<Point2<f64>> {
         let s = plane.coords.norm_squared();

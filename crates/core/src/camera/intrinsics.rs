@@ -37,6 +37,11 @@ impl Intrinsics {
         Ok(Self { fx, fy, cx, cy, skew })
     }
 
+    /// The calibration matrix K, rows first: the inverse of [`Self::from_matrix`].
+    pub fn matrix(&self) -> [[f64; 3]; 3] {
+        [[self.fx, self.skew, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]]
+    }
+
     /// Pixel of a point on the normalised image plane.
     pub(super) fn pixel(&self, plane: &Point2<f64>) -> Point2<f64> {
         Point2::new(self.fx * plane.x + self.skew * plane.y + self.cx, self.fy * plane.y + self.cy)

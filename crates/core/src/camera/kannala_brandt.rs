@@ -41,6 +41,17 @@ impl KannalaBrandt {
         Ok(Self { intrinsics, growth: [1.0, k1, k2, k3, k4], limit })
     }
 
+    /// The pinhole part.
+    pub fn intrinsics(&self) -> &Intrinsics {
+        &self.intrinsics
+    }
+
+    /// The coefficients k1 k2 k3 k4.
+    pub fn coefficients(&self) -> [f64; 4] {
+        let [_, k1, k2, k3, k4] = self.growth;
+        [k1, k2, k3, k4]
+    }
+
     pub(super) fn project(&self, point: &Point3<f64>) -> Option<Point2<f64>> {
         let (across, direction) = polar(point.x, point.y);
         let angle = libm::atan2(across, point.z);

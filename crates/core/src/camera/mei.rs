@@ -37,6 +37,17 @@ impl Mei {
         Ok(Self { intrinsics, xi, distortion })
     }
 
+    /// The pinhole part.
+    pub fn intrinsics(&self) -> &Intrinsics {
+        &self.intrinsics
+    }
+
+    /// The coefficients xi k1 k2 p1 p2.
+    pub fn coefficients(&self) -> [f64; 5] {
+        let ([k1, k2, ..], [p1, p2]) = self.distortion.coefficients();
+        [self.xi, k1, k2, p1, p2]
+    }
+
     pub(super) fn project(&self, point: &Point3<f64>) -> Option<Point2<f64>> {
         let distance = libm::hypot(libm::hypot(point.x, point.y), point.z);
         let cosine = point.z / distance;

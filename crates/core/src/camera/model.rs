@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Point3, Unit, Vector3};
 
-use super::{BrownConrady, KannalaBrandt, Mei, Ocam, Pinhole};
+use super::{BrownConrady, Intrinsics, KannalaBrandt, Mei, Ocam, Pinhole};
 
 /// How a camera maps its frame (x right, y down, z forward) to continuous pixels.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +28,28 @@ impl CameraModel {
             Self::KannalaBrandt(_) => "kannala-brandt",
             Self::Mei(_) => "mei",
             Self::Ocam(_) => "ocam",
+        }
+    }
+
+    /// The pinhole part, if the model ends with one.
+    pub fn intrinsics(&self) -> Option<&Intrinsics> {
+        match self {
+            Self::Pinhole(model) => Some(model.intrinsics()),
+            Self::BrownConrady(model) => Some(model.intrinsics()),
+            Self::KannalaBrandt(model) => Some(model.intrinsics()),
+            Self::Mei(model) => Some(model.intrinsics()),
+            Self::Ocam(_) => None,
+        }
+    }
+
+    /// The distortion's coefficients in the order that the model is made from; none for a pinhole
+    /// and for OCam, which has a polynomial of its own.
+    pub fn coefficients(&self) -> Vec<f64> {
+        match self {
+            Self::Pinhole(_) | Self::Ocam(_) => Vec::new(),
+            Self::BrownConrady(model) => model.coefficients(),
+            Self::KannalaBrandt(model) => model.coefficients().to_vec(),
+            Self::Mei(model) => model.coefficients().to_vec(),
         }
     }
 
@@ -72,7 +94,27 @@ impl CameraModel {
 mod tests {
     use super::super::checks::refuses_strange_input;
     use super::*;
-    use crate::camera::Intrinsics;
+
+    #[test]
+    fn a_model_is_made_again_from_its_own_numbers() {
+        let k = [[400.0, 2.0, 320.0], [0.0, 500.0, 240.0], [0.0, 0.0, 1.0]];
+        let lens = Intrinsics::from_matrix(&k).unwrap();
+        let d = [0.1, -0.02, 0.003, -0.004, 0.005, 0.06, 0.007, -0.008];
+        for numbers in [&d[..4], &d[..5], &d] {
+            let model = CameraModel::BrownConrady(BrownConrady::new(lens, numbers).unwrap());
+            let again = BrownConrady::new(*model.intrinsics().unwrap(), &model.coefficients());
+            assert_eq!(CameraModel::BrownConrady(again.unwrap()), model);
+        }
+        let fisheye = KannalaBrandt::new(lens, &d[..4]).unwrap();
+        assert_eq!(KannalaBrandt::new(lens, &fisheye.coefficients()).unwrap(), fisheye);
+        let mei = Mei::new(lens, &d[..5]).unwrap();
+        assert_eq!(Mei::new(lens, &mei.coefficients()).unwrap(), mei);
+        let ocam =
+            Ocam::new(&[-200.0, 0.0, 1e-3], [320.0, 240.0], [1.0, 1e-4, -1e-4], 1.9).unwrap();
+        let (poly, centre, affine) = (ocam.polynomial(), ocam.centre(), ocam.affine());
+        assert_eq!(Ocam::new(poly, centre, affine, ocam.max_angle_rad()).unwrap(), ocam);
+        assert_eq!(lens.matrix(), k);
+    }
 
     #[test]
     fn absurd_calibrations_never_panic() {

@@ -65,6 +65,27 @@ impl Ocam {
         })
     }
 
+    /// The polynomial, ascending powers of rho; a0 is above 0.
+    pub fn polynomial(&self) -> &[f64] {
+        &self.polynomial
+    }
+
+    /// The centre: column, row, pixels.
+    pub fn centre(&self) -> [f64; 2] {
+        self.centre.into()
+    }
+
+    /// The affine part c, d, e.
+    pub fn affine(&self) -> [f64; 3] {
+        let affine = &self.pixel_from_sensor;
+        [affine.m11, affine.m12, affine.m21]
+    }
+
+    /// The largest angle from the optical axis, radians.
+    pub fn max_angle_rad(&self) -> f64 {
+        self.max_angle_rad
+    }
+
     pub(super) fn project(&self, point: &Point3<f64>) -> Option<Point2<f64>> {
         let (across, direction) = polar(point.x, point.y);
         let angle = libm::atan2(across, point.z);

@@ -18,6 +18,11 @@ impl Pinhole {
         Self { intrinsics }
     }
 
+    /// The pinhole part.
+    pub fn intrinsics(&self) -> &Intrinsics {
+        &self.intrinsics
+    }
+
     pub(super) fn project(&self, point: &Point3<f64>) -> Option<Point2<f64>> {
         let plane = Point2::new(point.x / point.z, point.y / point.z);
         (point.z > 0.0).then(|| self.intrinsics.pixel(&plane))

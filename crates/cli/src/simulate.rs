@@ -1,0 +1,137 @@
+//! `simulate`: a drive through an exactly known world, as a log with its truth.
+
+use std::path::Path;
+
+use occlabel_core::{Fault, Taxonomy};
+use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
+use occlabel_simulate::{
+    Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_mcap,
+    write_nuscenes, write_semantickitti,
+};
+
+use crate::args::{ImagesArg, SimulateArgs, WrittenFormat};
+use crate::console::Console;
+use crate::exit::{Outcome, Stop};
+
+pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Stop> {
+    let worlds = worlds(args).map_err(Stop::usage)?;
+    let taxonomy = taxonomy(&worlds[0].1).map_err(Stop::usage)?;
+    let drive = |(_, world): &(String, World)| Drive::new(world.clone(), &taxonomy);
+    let drives: Vec<Drive> =
+        worlds.iter().map(drive).collect::<Result<_, _>>().map_err(Stop::usage)?;
+    let output = Output::create(&args.output).map_err(usage_or_failed)?;
+    write_truth(&worlds, &output)?;
+    let (written, last) = write(args, &drives, &taxonomy, &output)?;
+    let size = output.finish(&last)?;
+    tell(&written, size, console);
+    if args.format == WrittenFormat::Nuscenes {
+        console.result(&format!("label it with  {}", label_line(args, &worlds[0].1)));
+    }
+    Ok(Outcome::Complete)
+}
+
+/// An output folder that is taken is a matter of usage; one that cannot be written is not.
+fn usage_or_failed(fault: Fault) -> Stop {
+    if fault.rule == "output" { Stop::usage(fault) } else { fault.into() }
+}
+
+/// Each scene's world, with its text: overrides applied, so that it can be built again from it.
+fn worlds(args: &SimulateArgs) -> Result<Vec<(String, World)>, Fault> {
+    let (text, place) = world_text(&args.world)?;
+    let text = world_text_with(&text, &args.settings)?;
+    let world = World::parse(&text, &place)?;
+    if args.scenes == 1 {
+        return Ok(vec![(text, world)]);
+    }
+    if args.format != WrittenFormat::Nuscenes {
+        let found = format!("{} of another format", args.scenes);
+        return Err(Fault::new("usage", "--scenes", "nuscenes, or one scene a log", found));
+    }
+    let variant = |scene: u32| {
+        let (name, seed) = (&world.name, world.seed.wrapping_add(u64::from(scene) - 1));
+        let sets = [format!("name=\"{name}-{scene:04}\""), format!("seed={seed}")];
+        let text = world_text_with(&text, &sets)?;
+        let world = World::parse(&text, &place)?;
+        Ok((text, world))
+    };
+    (1..=args.scenes).map(variant).collect()
+}
+
+/// The text of a shipped world, else of a file; and where it is from.
+fn world_text(world: &str) -> Result<(String, String), Fault> {
+    if let Some(text) = shipped_world(world) {
+        return Ok((text.to_owned(), format!("{world}.toml")));
+    }
+    let text = std::fs::read_to_string(world).map_err(|error| {
+        let names: Vec<&str> = WORLDS.iter().map(|world| world.name).collect();
+        let expected = format!("{}, or a readable world file", names.join(", "));
+        Fault::new("world", world, expected, error.to_string())
+    })?;
+    Ok((text, world.to_owned()))
+}
+
+fn taxonomy(world: &World) -> Result<Taxonomy, Fault> {
+    let name = &world.taxonomy;
+    let text = shipped_taxonomy(name).ok_or_else(|| {
+        Fault::new("world", "taxonomy", "a shipped taxonomy", format!("`{name}`"))
+            .hint("`occlabel presets` lists them")
+    })?;
+    parse_taxonomy(text, name)
+}
+
+/// The worlds beside the log, for who judges its labels.
+fn write_truth(worlds: &[(String, World)], output: &Output) -> Result<(), Fault> {
+    match worlds {
+        [(text, _)] => output.write("truth/world.toml", text.as_bytes()),
+        worlds => worlds.iter().try_for_each(|(text, world)| {
+            output.write(&format!("truth/{}.toml", world.name), text.as_bytes())
+        }),
+    }
+}
+
+/// Writes the log, and tells the entry to finish it with.
+fn write(
+    args: &SimulateArgs,
+    drives: &[Drive],
+    taxonomy: &Taxonomy,
+    output: &Output,
+) -> Result<(Written, String), Fault> {
+    let images = match args.images {
+        ImagesArg::None => Images::None,
+        ImagesArg::Keyframes => Images::Keyframes,
+        ImagesArg::All => Images::All,
+    };
+    match args.format {
+        WrittenFormat::Nuscenes => write_nuscenes(drives, taxonomy, images, output)
+            .map(|(written, last)| (written, last.to_owned())),
+        WrittenFormat::Semantickitti => write_semantickitti(&drives[0], output)
+            .map(|(written, last)| (written, last.to_owned())),
+        WrittenFormat::Mcap => write_mcap(&drives[0], taxonomy, images, output),
+    }
+}
+
+fn tell(written: &Written, (files, bytes): (usize, u64), console: &Console) {
+    let Written { scenes, sweeps, labelled, points, keyframes, boxes, images } = written;
+    for line in [
+        format!("scenes     {scenes}"),
+        format!("sweeps     {sweeps}, {labelled} labelled"),
+        format!("points     {points}"),
+        format!("keyframes  {keyframes}"),
+        format!("boxes      {boxes}"),
+        format!("images     {images}"),
+        format!("files      {files}"),
+        format!("bytes      {bytes}"),
+    ] {
+        console.result(&line);
+    }
+}
+
+/// The line that labels the log; a nuScenes log is taken for one of its own taxonomy.
+fn label_line(args: &SimulateArgs, world: &World) -> String {
+    let input = Path::new(&args.output).display();
+    let line = format!("occlabel label --format nuscenes --input {input} --output LABELS");
+    match world.taxonomy.as_str() {
+        "occ3d-nuscenes" => line,
+        taxonomy => format!("{line} --set taxonomy.file={taxonomy}"),
+    }
+}

@@ -1,0 +1,20 @@
+//! Writers: a drive as a log on disk, in the formats that readers know.
+//!
+//! Each writes what the drive's scene says, faults of its annotator included, and nothing that a
+//! real log would not hold. All files go through [`Output`]: a log that looks whole is whole.
+
+mod exposures;
+mod files;
+mod mcap;
+mod nuscenes;
+mod png;
+mod points;
+mod raw_names;
+mod semantickitti;
+mod written;
+
+pub use files::Output;
+pub use mcap::write_mcap;
+pub use nuscenes::write_nuscenes;
+pub use semantickitti::write_semantickitti;
+pub use written::{Images, Written};

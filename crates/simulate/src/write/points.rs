@@ -1,0 +1,39 @@
+//! The points of a sweep as every log format has them.
+
+use nalgebra::Point3;
+use occlabel_core::Timestamp;
+
+use crate::{Drive, What};
+
+/// One point of a log.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LoggedPoint<'a> {
+    /// In the frame of its lidar, metres.
+    pub(crate) position_m: Point3<f32>,
+    /// Number of its ray within the shot: its beam.
+    pub(crate) ring: u16,
+    /// When it was measured.
+    pub(crate) time: Timestamp,
+    /// Its raw label; empty if it has none.
+    pub(crate) label: &'a str,
+    /// The mover it belongs to.
+    pub(crate) mover: Option<usize>,
+}
+
+/// The points of a sweep of the scene, in the order of its rays.
+pub(crate) fn logged_points(drive: &Drive, sweep: usize) -> Vec<LoggedPoint<'_>> {
+    let returns = drive.returns(sweep);
+    let cloud = drive.points_of(sweep, &returns);
+    let measured = returns.into_iter().zip(cloud.positions).zip(cloud.labels);
+    let point = |((found, position_m), label): ((crate::Return, Point3<f64>), _)| LoggedPoint {
+        position_m: position_m.cast(),
+        ring: found.ring as u16,
+        time: found.time,
+        label: drive.raw_label(found.hit.what, label).unwrap_or_default(),
+        mover: match found.hit.what {
+            What::Mover(mover) => Some(mover),
+            _ => None,
+        },
+    };
+    measured.map(point).collect()
+}
