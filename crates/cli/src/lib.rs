@@ -22,6 +22,8 @@ mod interrupt;
 mod label;
 mod presets;
 mod progress;
+mod quality;
+mod threads;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -84,6 +86,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
     match command {
         Command::Demo(args) => demo::run(args, console),
         Command::Label(args) => label::run(args, console),
+        Command::Quality(args) => quality::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),
         Command::Completions { shell } => completions::run(shell, console),
