@@ -30,6 +30,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Label a log: the main job.
     Label(Box<LabelArgs>),
+    /// Measure how right labels are.
+    Quality(Box<QualityArgs>),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.
@@ -137,6 +139,27 @@ pub(crate) struct LabelArgs {
     /// How progress is shown on stderr.
     #[arg(long, value_enum, default_value_t = ProgressArg::Auto)]
     pub(crate) progress: ProgressArg,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct QualityArgs {
+    /// Keep every N-th sweep of each lidar out of the fusion, and ask it afterwards.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..))]
+    #[arg(requires_all = ["format", "input"], required = true)]
+    pub(crate) held_out: Option<u16>,
+    #[command(flatten)]
+    pub(crate) log: Option<LogArgs>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    /// Standard deviation of the lidar's range noise, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 0.02, value_parser = parse_noise)]
+    pub(crate) range_noise_m: f64,
+    /// Threads. [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) jobs: Option<u16>,
+    /// Print JSON, scene by scene, instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -267,6 +290,14 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
     match digits.trim().parse::<f64>() {
         Ok(number) if number > 0.0 => Ok((number * unit as f64) as u64),
         _ => Err(format!("expected a number above 0 with a unit, found `{text}`")),
+    }
+}
+
+/// Metres of noise: 0 or more.
+fn parse_noise(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(metres) if metres.is_finite() && metres >= 0.0 => Ok(metres),
+        _ => Err(format!("expected metres, 0 or more, found `{text}`")),
     }
 }
 

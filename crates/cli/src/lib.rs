@@ -22,7 +22,9 @@ mod interrupt;
 mod label;
 mod presets;
 mod progress;
+mod quality;
 mod simulate;
+mod threads;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -85,6 +87,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
     match command {
         Command::Demo(args) => demo::run(args, console),
         Command::Label(args) => label::run(args, console),
+        Command::Quality(args) => quality::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),

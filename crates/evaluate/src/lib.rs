@@ -52,6 +52,7 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+pub mod held_out;
 mod world_truth;
 
 pub use world_truth::{

@@ -24,15 +24,27 @@ pub fn aggregate_scene<E: Send>(
     mut enter: impl FnMut(Stage),
 ) -> Result<AggregatedScene<ClassId>, E> {
     enter(Stage::Aggregate);
+    let accumulated = sort_scene(scene, rules, read)?;
+    enter(Stage::Relabel);
+    Ok(relabel(accumulated, &rules.relabel(scene)))
+}
+
+/// Reads, sorts and sums the sweeps of a scene; labels are as logged. Parallel over sweeps.
+///
+/// # Errors
+/// The first error of `read`, in the order of sweeps.
+pub fn sort_scene<E: Send>(
+    scene: &Scene,
+    rules: &Rules,
+    read: impl Fn(&SweepHeader) -> Result<Option<PointCloud<PointLabel>>, E> + Sync,
+) -> Result<AggregatedScene<Option<ClassId>>, E> {
     let split_one = |header| -> Result<_, E> {
         let boxes: Vec<_> = boxes_at(&scene.tracks, header, rules);
         Ok(read(header)?.map(|cloud| split_sweep(&Sweep { header, cloud }, &boxes, &rules.split)))
     };
     let sorted: Vec<_> = scene.sweeps.par_iter().map(split_one).collect();
     let sorted = sorted.into_iter().collect::<Result<Vec<_>, E>>()?;
-    let accumulated = accumulate(sorted.into_iter().flatten());
-    enter(Stage::Relabel);
-    Ok(relabel(accumulated, &rules.relabel(scene)))
+    Ok(accumulate(sorted.into_iter().flatten()))
 }
 
 /// The boxes that sort a sweep's points, extrapolated ones included.

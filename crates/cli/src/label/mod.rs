@@ -24,6 +24,7 @@ use crate::label::plan::Plan;
 use crate::label::report::{EarlierReport, Report};
 use crate::label::scene_run::SceneRun;
 use crate::progress::Progress;
+use crate::threads::start_threads;
 
 /// What every part of the run needs.
 pub(crate) struct Job<'a> {
@@ -43,7 +44,7 @@ impl Job<'_> {
 
 pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> {
     let interrupt = Interrupt::listen();
-    let threads = start_threads(args)?;
+    let threads = start_threads(args.jobs);
     let opened = open(&args.log, &args.config)?;
     let tree = LabelTree::new(&args.output);
     let job = Job { args, opened: &opened, console, tree, threads };
@@ -54,14 +55,6 @@ pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> 
         return Ok(findings.outcome());
     }
     label_scenes(&job, &plan, findings, &interrupt)
-}
-
-/// The thread pool of all stages. A second command in one process keeps the first one's.
-fn start_threads(args: &LabelArgs) -> Result<usize, Stop> {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = args.jobs.map_or(cores, usize::from);
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    Ok(threads)
 }
 
 fn label_scenes(
