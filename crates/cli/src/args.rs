@@ -143,9 +143,21 @@ pub(crate) struct LabelArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct QualityArgs {
+    /// Label trees to judge by --world-truth; those of one grid share the work.
+    #[arg(value_name = "DIR", requires = "world_truth")]
+    pub(crate) trees: Vec<PathBuf>,
+    /// Judge by an exactly known world: a simulated log's folder, or a world file.
+    #[arg(long, value_name = "T", requires = "trees", conflicts_with = "held_out")]
+    pub(crate) world_truth: Option<PathBuf>,
+    /// Leave out the costly figures: denser rays (A2d) and cameras (A6c, A6g).
+    #[arg(long, requires = "world_truth")]
+    pub(crate) quick: bool,
+    /// Fail if a figure does not keep its limit: `precise`, or a TOML file.
+    #[arg(long, value_name = "FILE", requires = "world_truth")]
+    pub(crate) limits: Option<PathBuf>,
     /// Keep every N-th sweep of each lidar out of the fusion, and ask it afterwards.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..))]
-    #[arg(requires_all = ["format", "input"], required = true)]
+    #[arg(requires_all = ["format", "input"], required_unless_present = "world_truth")]
     pub(crate) held_out: Option<u16>,
     #[command(flatten)]
     pub(crate) log: Option<LogArgs>,

@@ -102,14 +102,19 @@ fn read_config(args: &ConfigArgs) -> Result<(Option<String>, Config), Fault> {
 /// Puts what is meant in place of every `"auto"`, and gives the taxonomy with its file's hash.
 fn resolve(config: &mut Config, autos: &Autos) -> Result<(Taxonomy, String), Fault> {
     let file = config.taxonomy_file(autos).to_owned();
-    let (name, text) = match shipped_taxonomy(&file) {
-        Some(text) => (file.clone(), text.to_owned()),
-        None => (file_name(&file), read_text(Path::new(&file))?),
-    };
-    let taxonomy = parse_taxonomy(&text, &file)?;
-    config.taxonomy.file = name;
+    let (taxonomy, hash) = taxonomy_of(&file)?;
+    config.taxonomy.file = if shipped_taxonomy(&file).is_some() { file } else { file_name(&file) };
     config.resolve(autos, &taxonomy);
-    Ok((taxonomy, blake3::hash(text.as_bytes()).to_string()))
+    Ok((taxonomy, hash))
+}
+
+/// A shipped taxonomy, or that of a file, with the file's hash.
+pub(crate) fn taxonomy_of(file: &str) -> Result<(Taxonomy, String), Fault> {
+    let text = match shipped_taxonomy(file) {
+        Some(text) => text.to_owned(),
+        None => read_text(Path::new(file))?,
+    };
+    Ok((parse_taxonomy(&text, file)?, blake3::hash(text.as_bytes()).to_string()))
 }
 
 /// A path without its folders, which would tell of the machine.

@@ -66,6 +66,11 @@ impl Drive {
         &self.scene
     }
 
+    /// Poses as logged, at any time.
+    pub fn poses(&self) -> &LoggedPoses {
+        &self.poses
+    }
+
     /// The returns of a sweep of the scene as its lidar measured them.
     pub fn returns(&self, sweep: usize) -> Vec<Return> {
         self.lidar(sweep).sweep(&self.world, self.sweeps[sweep].number)
@@ -107,11 +112,6 @@ impl Drive {
     pub fn exposures(&self, camera: usize) -> Vec<Exposure> {
         let times = self.world.cameras[camera].clock.ticks(self.world.duration_s);
         times.map(|time| exposure(&self.world, &self.poses, camera, time)).collect()
-    }
-
-    /// A camera's mounting as logged, by its number in the scene.
-    pub fn ego_from_camera(&self, camera: usize) -> Pose {
-        self.poses.ego_from_camera[camera]
     }
 
     /// The number of a sweep of the scene, by its time and lidar.
@@ -168,6 +168,18 @@ impl Drive {
     /// What a part of the world truly is.
     pub fn label_of(&self, what: What) -> PointLabel {
         self.labels.of(what)
+    }
+
+    /// The raw label of a point of a part of the world that is logged with a label; none if it is
+    /// unlabelled.
+    pub fn raw_label(&self, what: What, logged: PointLabel) -> Option<&str> {
+        match logged {
+            PointLabel::Unlabelled => None,
+            PointLabel::Class(class) if logged != self.label_of(what) => {
+                self.labels.raw_name(class)
+            }
+            PointLabel::Class(_) | PointLabel::Ignored => Some(self.world.class_of(what)),
+        }
     }
 
     /// The lidar of a sweep of the scene, and the how many-th of its sweeps it is.

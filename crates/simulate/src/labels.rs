@@ -1,6 +1,6 @@
 //! What the labels of a world's parts mean.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use occlabel_core::{ClassId, Fault, Meaning, PointLabel, Taxonomy};
 
@@ -8,15 +8,15 @@ use crate::check::{each, unknown};
 use crate::palette::class_colour;
 use crate::{What, World};
 
-/// What each part of a world is labelled, and how classes are painted.
+/// What each part of a world is labelled, and how classes are named and painted.
 #[derive(Clone, Debug)]
 pub(crate) struct Labels {
     ground: Vec<PointLabel>,
     statics: Vec<PointLabel>,
     movers: Vec<PointLabel>,
     ego: PointLabel,
-    /// Classes that some raw point label means.
-    named: BTreeSet<ClassId>,
+    /// Of each class that has one, the first raw name in byte order.
+    raw_names: BTreeMap<ClassId, String>,
     colours: Vec<[u8; 3]>,
 }
 
@@ -41,7 +41,7 @@ impl Labels {
                 Some(body) => label("ego.body.class", &body.class)?,
                 None => PointLabel::Ignored,
             },
-            named: named_classes(taxonomy),
+            raw_names: raw_names(taxonomy),
             colours: taxonomy.names.iter().map(|name| class_colour(name)).collect(),
         })
     }
@@ -58,9 +58,14 @@ impl Labels {
 
     /// Another class than a point's own, by a number in [0, 1): any that a raw name means.
     pub(crate) fn mistaken_for(&self, class: ClassId, drawn: f64) -> ClassId {
-        let others: Vec<_> = self.named.iter().filter(|other| **other != class).collect();
+        let others: Vec<_> = self.raw_names.keys().filter(|other| **other != class).collect();
         let at = (drawn * others.len() as f64) as usize;
         others.get(at).map_or(class, |other| **other)
+    }
+
+    /// A raw name that means a class, if the taxonomy has one.
+    pub(crate) fn raw_name(&self, class: ClassId) -> Option<&str> {
+        self.raw_names.get(&class).map(String::as_str)
     }
 
     pub(crate) fn colour(&self, class: ClassId) -> [u8; 3] {
@@ -68,10 +73,12 @@ impl Labels {
     }
 }
 
-fn named_classes(taxonomy: &Taxonomy) -> BTreeSet<ClassId> {
-    let class = |meaning: &Meaning| match meaning {
-        Meaning::Class(class) => Some(*class),
-        Meaning::Ignore => None,
-    };
-    taxonomy.points.values().filter_map(class).collect()
+fn raw_names(taxonomy: &Taxonomy) -> BTreeMap<ClassId, String> {
+    let mut names = BTreeMap::new();
+    for (raw, meaning) in &taxonomy.points {
+        if let Meaning::Class(class) = meaning {
+            names.entry(*class).or_insert_with(|| raw.clone());
+        }
+    }
+    names
 }

@@ -86,7 +86,7 @@ mod world;
 mod world_file;
 mod write;
 
-pub use annotator::{Annotator, BoxTime, LabelledSweeps, Unboxed};
+pub use annotator::{Annotator, BoxTime, LabelledSweeps, LoggedPoses, Unboxed};
 pub use camera::WorldCamera;
 pub use clock::Clock;
 pub use drive::Drive;

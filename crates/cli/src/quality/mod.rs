@@ -2,11 +2,18 @@
 
 mod held_out;
 mod held_out_scene;
+mod judged_tree;
+mod known_worlds;
+mod verdict;
+mod world_truth;
 
 use crate::args::QualityArgs;
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
 
 pub(crate) fn run(args: &QualityArgs, console: &Console) -> Result<Outcome, Stop> {
-    held_out::run(args, console)
+    match &args.world_truth {
+        Some(truth) => world_truth::run(args, truth, console),
+        None => held_out::run(args, console),
+    }
 }

@@ -11,7 +11,7 @@ use crate::check::{need, within};
 use crate::mover::Mover;
 
 pub(crate) use boxes::Boxes;
-pub(crate) use poses::LoggedPoses;
+pub use poses::LoggedPoses;
 pub(crate) use sightings::Sightings;
 
 /// The `[annotator]` of a world, checked. By default it is perfect.
@@ -41,10 +41,8 @@ pub struct Annotator {
     pub jitter_yaw_rad: f64,
     /// Deviation of each of a box's edges, metres; none shrinks below half its true length.
     pub jitter_size_m: f64,
-    /// How far the ego's logged place drifts from the true one, as a share of the way driven.
-    ///
-    /// With drift e and a way s driven since time zero, the place is off by `e s` in one direction
-    /// of the world, drawn once a drive, and the heading by `e s / 100 m` radians to one side.
+    /// How far the ego's logged place drifts from the true one, as a share of the way driven; see
+    /// [`LoggedPoses::world_from_ego`].
     pub pose_drift: f64,
     /// How far each sensor's logged mounting stands from its true one, metres.
     pub calibration_m: f64,

@@ -14,11 +14,11 @@ const HEADING_WAY_M: f64 = 100.0;
 
 /// Poses as the log has them: the true ones, with the annotator's drift and miscalibration.
 #[derive(Clone, Debug)]
-pub(crate) struct LoggedPoses {
+pub struct LoggedPoses {
     /// Mounting of each lidar.
-    pub(crate) ego_from_lidar: Vec<Pose>,
+    pub ego_from_lidar: Vec<Pose>,
     /// Mounting of each camera.
-    pub(crate) ego_from_camera: Vec<Pose>,
+    pub ego_from_camera: Vec<Pose>,
     drift: Option<Drift>,
 }
 
@@ -45,8 +45,11 @@ impl LoggedPoses {
         }
     }
 
-    /// The ego's logged pose; see [`Annotator::pose_drift`](crate::Annotator::pose_drift).
-    pub(crate) fn world_from_ego(&self, world: &World, time: Timestamp) -> Pose {
+    /// The ego's logged pose.
+    ///
+    /// With drift e and a way s driven since time zero, its place is off by `e s` in one direction
+    /// of the world, drawn once a drive, and its heading by `e s / 100 m` radians to one side.
+    pub fn world_from_ego(&self, world: &World, time: Timestamp) -> Pose {
         let time_s = time.seconds_since(Timestamp(0));
         let world_from_ego = world.world_from_ego(time_s);
         let Some(drift) = &self.drift else { return world_from_ego };
@@ -57,15 +60,18 @@ impl LoggedPoses {
             * yaw_pitch_roll(turned_rad, 0.0, 0.0)
     }
 
+    /// A lidar's logged pose.
+    pub fn world_from_lidar(&self, world: &World, lidar: usize, time: Timestamp) -> Pose {
+        self.world_from_ego(world, time) * self.ego_from_lidar[lidar]
+    }
+
     /// Where the log has what a lidar truly sees at a time: true world to logged world.
     pub(crate) fn logged_from_true(&self, world: &World, lidar: usize, time: Timestamp) -> Pose {
         let exact = &world.lidars[lidar];
         if self.drift.is_none() && self.ego_from_lidar[lidar] == exact.ego_from_lidar {
             return Pose::identity();
         }
-        self.world_from_ego(world, time)
-            * self.ego_from_lidar[lidar]
-            * exact.world_from_lidar(world, time).inverse()
+        self.world_from_lidar(world, lidar, time) * exact.world_from_lidar(world, time).inverse()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Straight lines from cameras to voxels.
 
 use nalgebra::{Point3, Vector3};
-use occlabel_core::{Camera, Exposure, GridSpec, RigidMap, Timestamp, VoxelTruth};
+use occlabel_core::{Camera, Exposure, GridSpec, RigidMap, VoxelTruth};
 use rayon::prelude::*;
 
 use crate::truth::TruthAt;

@@ -1,0 +1,55 @@
+//! The exactly known worlds of a simulated log, by the names of their scenes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use occlabel_core::Fault;
+use occlabel_simulate::World;
+
+/// Worlds by name.
+pub(crate) struct KnownWorlds {
+    place: String,
+    worlds: BTreeMap<String, World>,
+}
+
+impl KnownWorlds {
+    /// Reads a world file, all that a folder holds, or those of a simulated log's `truth` folder.
+    pub(crate) fn read(place: &Path) -> Result<Self, Fault> {
+        let worlds = files(place)?.iter().map(|file| world(file)).collect::<Result<Vec<_>, _>>()?;
+        let worlds = worlds.into_iter().map(|world| (world.name.clone(), world)).collect();
+        Ok(Self { place: place.display().to_string(), worlds })
+    }
+
+    /// The world that a scene was driven in.
+    pub(crate) fn of(&self, scene: &str) -> Result<&World, Fault> {
+        self.worlds.get(scene).ok_or_else(|| {
+            let known: Vec<&str> = self.worlds.keys().map(String::as_str).collect();
+            let expected = format!("the world of the labelled scene `{scene}`");
+            Fault::new("world-truth", &self.place, expected, known.join(", "))
+        })
+    }
+}
+
+fn world(file: &Path) -> Result<World, Fault> {
+    let place = file.display().to_string();
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Fault::new("world-truth", &place, "a world file", error.to_string()))?;
+    World::parse(&text, &place)
+}
+
+fn files(place: &Path) -> Result<Vec<PathBuf>, Fault> {
+    if !place.is_dir() {
+        return Ok(vec![place.to_owned()]);
+    }
+    let truth = place.join("truth");
+    let folder = if truth.is_dir() { truth } else { place.to_owned() };
+    let unread = |error: std::io::Error| {
+        let place = folder.display().to_string();
+        Fault::new("world-truth", place, "a folder of world files", error.to_string())
+    };
+    let entries: Vec<_> = std::fs::read_dir(&folder).and_then(Iterator::collect).map_err(unread)?;
+    let mut files: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    Ok(files)
+}
