@@ -1,6 +1,6 @@
 //! What is exactly known of a voxel of a simulated drive at a keyframe.
 
-use crate::{ClassId, TrackId};
+use crate::{ClassId, ClassSet, TrackId};
 
 /// The truth about one voxel, whatever any label says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -9,15 +9,17 @@ pub struct VoxelTruth {
     pub solid: f32,
     /// Whether a surface between solid and air passes through it.
     pub surface: bool,
-    /// Distance of its centre to the nearest such surface, in voxels (of the shortest edge).
+    /// Distance of its centre to the nearest such surface, in voxels (of the shortest edge); 4 if
+    /// it is farther.
     pub surface_distance: f32,
     /// Distance of its nearest point to the nearest solid, in voxels (of the shortest edge): 0 where
     /// a solid reaches into it; none if that is farther than one voxel, or was not measured.
     pub clearance: Option<f32>,
-    /// The class that most of its surface has (of its volume, if no surface passes); none if empty.
+    /// The class that most of its surface to the air has (of its volume, if it is full); none if
+    /// it is empty, or of a part that has no class.
     pub class: Option<ClassId>,
-    /// One bit per class id below 32: the classes whose surfaces pass through it.
-    pub classes: u32,
+    /// All classes whose surface to the air passes through it.
+    pub classes: ClassSet,
     /// The mover that it belongs to, if its class is that of one.
     pub instance: Option<TrackId>,
     /// Rigid velocity of that mover at its centre in the grid frame, metres per second; NaN if the

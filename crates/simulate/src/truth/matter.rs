@@ -1,7 +1,7 @@
 //! What a grid's voxels are made of at a keyframe.
 
 use nalgebra::Vector3;
-use occlabel_core::{GridSpec, VoxelIndex, VoxelTruth};
+use occlabel_core::{ClassSet, GridSpec, VoxelIndex, VoxelTruth};
 use rayon::prelude::*;
 
 use crate::Drive;
@@ -141,7 +141,7 @@ impl<'a> Filler<'a> {
             &only_deepest
         };
         (truth.class, truth.instance) = parts.winner(self.drive);
-        truth.classes = if content.open { parts.class_bits(self.drive) } else { 0 };
+        truth.classes = if content.open { parts.classes(self.drive) } else { ClassSet::default() };
         content.surface_m
     }
 }

@@ -5,12 +5,11 @@
 //!
 //! - **Solid.** A voxel is solid above 0 if and only if some solid reaches into it by more than some
 //!   micrometres: by parry's distance between two convex solids, or by a plane's own, not by samples.
-//!   The share is exact where
-//!   the solid is one plane within the voxel or a part of it; else the voxel is halved down to 1/16
-//!   of its edges, and only leaves on an edge or a curve, or where several surfaces meet, are
-//!   estimated, each by the planes nearest to its centre. The error is at most those leaves' share of
-//!   the volume: about 1/256 for an edge across the voxel; for a curve, whose planes are nearly it,
-//!   far less than their share.
+//!   The share is exact where the solid is one plane within the voxel or a part of it; else the voxel
+//!   is halved down to 1/16 of its edges, and only leaves on an edge or a curve, or where several
+//!   surfaces meet, are estimated, each by the planes nearest to its centre. The error is at most
+//!   those leaves' share of the volume: about 1/256 for an edge across the voxel; a curve's planes
+//!   are nearly it, so that its error is far less.
 //! - **Surface** is what borders on air. Where one solid lies against another, within a tenth of a
 //!   millimetre, there is none. A voxel's distance to the surface is that to the nearest place of
 //!   each solid that no other solid covers (and to the surfaces found within the voxel itself): a

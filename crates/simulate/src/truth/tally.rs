@@ -1,6 +1,6 @@
 //! Whose a voxel is.
 
-use occlabel_core::{ClassId, PointLabel, TrackId};
+use occlabel_core::{ClassId, ClassSet, PointLabel, TrackId};
 
 use crate::{Drive, What};
 
@@ -24,10 +24,9 @@ impl Tally {
         }
     }
 
-    /// One bit for each class of the parts, of classes below 32.
-    pub(super) fn class_bits(&self, drive: &Drive) -> u32 {
-        let classes = self.0.iter().filter_map(|&(what, _)| class_of(drive, what));
-        classes.fold(0, |bits, class| bits | 1_u32.checked_shl(class.0.into()).unwrap_or(0))
+    /// The classes of all parts.
+    pub(super) fn classes(&self, drive: &Drive) -> ClassSet {
+        self.0.iter().filter_map(|&(what, _)| class_of(drive, what)).collect()
     }
 
     /// The class that has most, the lowest on ties; and the mover that has most of it, if any.
