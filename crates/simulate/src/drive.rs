@@ -109,11 +109,6 @@ impl Drive {
         self.scene.sweeps.binary_search_by(known).ok()
     }
 
-    /// The lidar of a sweep of the scene, and the how many-th of its sweeps it is.
-    pub(crate) fn taken_by(&self, sweep: usize) -> (&Lidar, usize) {
-        (self.lidar(sweep), self.sweeps[sweep].number)
-    }
-
     /// The scene's keyframe of that token. Every log of the drive names its keyframes so that the
     /// token ends in their time in nanoseconds.
     pub fn keyframe(&self, token: &str) -> Option<&Keyframe> {
@@ -137,6 +132,11 @@ impl Drive {
     /// What a return from a part of the world is labelled.
     pub fn label_of(&self, what: What) -> PointLabel {
         self.labels.of(what)
+    }
+
+    /// The lidar of a sweep of the scene, and the how many-th of its sweeps it is.
+    pub(crate) fn taken_by(&self, sweep: usize) -> (&Lidar, usize) {
+        (self.lidar(sweep), self.sweeps[sweep].number)
     }
 
     fn lidar(&self, sweep: usize) -> &Lidar {
