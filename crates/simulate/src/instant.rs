@@ -43,21 +43,23 @@ impl<'w> Instant<'w> {
             let world_from_body = world.world_from_ego(time_s) * ego_from_body;
             Body::new(shape.clone(), world_from_body, What::Ego)
         });
-        let movers =
-            (0..world.movers.len()).flat_map(|at| mover_bodies(world, at, mover_time_s(at)));
-        Self { world, moving: Bodies::new(movers.chain(ego).collect()) }
+        Self::with(world, mover_time_s, ego)
     }
 
-    /// The world as it would be without the ego, each mover at its own time, seconds.
+    /// The world without the ego's own body, each mover at its own time, seconds.
     pub(crate) fn without_ego(world: &'w World, mover_time_s: impl Fn(usize) -> f64) -> Self {
-        let movers =
-            (0..world.movers.len()).flat_map(|at| mover_bodies(world, at, mover_time_s(at)));
-        Self { world, moving: Bodies::new(movers.collect()) }
+        Self::with(world, mover_time_s, None)
     }
 
     /// Everything solid but the ground: what stands, then what moves.
     pub(crate) fn bodies(&self) -> impl Iterator<Item = &Body> {
         self.world.standing.iter().chain(self.moving.iter())
+    }
+
+    fn with(world: &'w World, mover_time_s: impl Fn(usize) -> f64, ego: Option<Body>) -> Self {
+        let movers =
+            (0..world.movers.len()).flat_map(|at| mover_bodies(world, at, mover_time_s(at)));
+        Self { world, moving: Bodies::new(movers.chain(ego).collect()) }
     }
 
     /// What a ray of the world meets first, at most `max_m` away.

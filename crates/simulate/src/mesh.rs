@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use nalgebra::Point3;
 use occlabel_core::Fault;
 use parry3d_f64::math::Pose as ParryPose;
-use parry3d_f64::query::details::intersection_test_composite_shape_shape;
+use parry3d_f64::query::details::distance_composite_shape_shape;
 use parry3d_f64::query::{DefaultQueryDispatcher, PointQuery, RayCast};
 use parry3d_f64::shape::{Cuboid, TriMesh, TriMeshFlags};
 
@@ -50,9 +50,12 @@ impl Mesh {
         Nearest::of_surface(&self.surface, p, None).0
     }
 
-    pub(crate) fn overlaps(&self, cuboid: &Cuboid, mesh_from_cuboid: &ParryPose) -> bool {
+    pub(crate) fn gap_m(&self, cuboid: &Cuboid, mesh_from_cuboid: &ParryPose) -> f64 {
         let centre = Point3::from(from_parry(mesh_from_cuboid.translation));
-        meets(&self.surface, cuboid, mesh_from_cuboid) || self.contains(&centre)
+        if self.contains(&centre) {
+            return 0.0;
+        }
+        surface_gap_m(&self.surface, cuboid, mesh_from_cuboid)
     }
 
     pub(crate) fn bounds(&self) -> [Point3<f64>; 2] {
@@ -61,12 +64,14 @@ impl Mesh {
     }
 }
 
-/// Whether a cuboid touches any triangle of a surface.
-pub(crate) fn meets(surface: &TriMesh, cuboid: &Cuboid, surface_from_cuboid: &ParryPose) -> bool {
+/// From a cuboid to the nearest triangle of a surface.
+pub(crate) fn surface_gap_m(
+    surface: &TriMesh,
+    cuboid: &Cuboid,
+    surface_from_cuboid: &ParryPose,
+) -> f64 {
     let dispatcher = DefaultQueryDispatcher;
-    let found =
-        intersection_test_composite_shape_shape(&dispatcher, surface_from_cuboid, surface, cuboid);
-    found.intersecting
+    distance_composite_shape_shape(&dispatcher, surface_from_cuboid, surface, cuboid).distance
 }
 
 fn check_faces(vertices_m: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<(), Fault> {

@@ -6,9 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use occlabel_core::Fault;
 use parry3d_f64::math::{Pose as ParryPose, Vector};
-use parry3d_f64::query::details::{
-    intersection_test_cuboid_cuboid, intersection_test_support_map_support_map,
-};
+use parry3d_f64::query::details::distance_support_map_support_map;
 use parry3d_f64::query::{PointQuery, RayCast};
 use parry3d_f64::shape::{Capsule, Cuboid, SupportMap};
 use serde::Deserialize;
@@ -164,17 +162,18 @@ impl Shape {
         }
     }
 
-    /// Whether a cuboid that stands somewhere in the shape's frame has a point in common with it.
-    pub(crate) fn overlaps(&self, cuboid: &Cuboid, shape_from_cuboid: &ParryPose) -> bool {
-        fn convex(form: &impl SupportMap, cuboid: &Cuboid, pose: &ParryPose) -> bool {
-            intersection_test_support_map_support_map(pose, form, cuboid)
-        }
+    /// From a cuboid that stands somewhere in the shape's frame to the shape: 0 if they have a point
+    /// in common.
+    pub(crate) fn gap_m(&self, cuboid: &Cuboid, shape_from_cuboid: &ParryPose) -> f64 {
+        let convex = |form: &dyn SupportMap| {
+            distance_support_map_support_map(shape_from_cuboid, form, cuboid)
+        };
         match &self.0 {
-            Form::Box(form) => intersection_test_cuboid_cuboid(shape_from_cuboid, form, cuboid),
-            Form::Cylinder(form) => convex(form, cuboid, shape_from_cuboid),
-            Form::Capsule(form) => convex(form, cuboid, shape_from_cuboid),
-            Form::Hull(form) => convex(form.as_ref(), cuboid, shape_from_cuboid),
-            Form::Mesh(form) => form.overlaps(cuboid, shape_from_cuboid),
+            Form::Box(form) => convex(form),
+            Form::Cylinder(form) => convex(form),
+            Form::Capsule(form) => convex(form),
+            Form::Hull(form) => convex(form.as_ref()),
+            Form::Mesh(form) => form.gap_m(cuboid, shape_from_cuboid),
         }
     }
 

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::truth::ROUNDING;
+
 /// Along an axis over which the cut moves less than this share of what it moves at most, it is taken
 /// to be upright: the exact sum would drown in rounding.
 const UPRIGHT: f64 = 1e-4;
@@ -11,7 +13,7 @@ const UPRIGHT: f64 = 1e-4;
 pub(super) struct Cut {
     /// Share of the cuboid's volume.
     pub(super) share: f64,
-    /// Area of the plane within the cuboid, square metres.
+    /// Area of the plane within the cuboid, square metres; the whole face if it lies on one.
     pub(super) area_m2: f64,
 }
 
@@ -32,21 +34,17 @@ impl Cut {
         }
         let depths = &depths[..count];
         let depth = depths.iter().sum::<f64>();
-        let reach = (depth / 2.0 - distance_m).clamp(0.0, depth);
+        let reach = depth / 2.0 - distance_m;
+        if (reach - depth / 2.0).abs() > depth * (0.5 + ROUNDING) {
+            return Self { share: if reach > 0.0 { 1.0 } else { 0.0 }, area_m2: 0.0 };
+        }
         let volume = 8.0 * half.product();
         let whole: f64 = depths.iter().product();
         // The area is the volume's slope: powers one lower, without the factor of the power.
         let lower: f64 = [1.0, 1.0, 2.0][count - 1];
-        Self {
-            share: (corners(depths, reach, count as i32) / (lower * count as f64 * whole))
-                .clamp(0.0, 1.0),
-            area_m2: (corners(depths, reach, count as i32 - 1) * volume / (lower * whole)).max(0.0),
-        }
-    }
-
-    /// Whether the plane passes through the cuboid at all, rounding aside.
-    pub(super) fn passes(&self) -> bool {
-        (super::ROUNDING..1.0 - super::ROUNDING).contains(&self.share)
+        let share = corners(depths, reach, count as i32) / (lower * count as f64 * whole);
+        let area_m2 = corners(depths, reach, count as i32 - 1) * volume / (lower * whole);
+        Self { share: share.clamp(0.0, 1.0), area_m2: area_m2.max(0.0) }
     }
 }
 

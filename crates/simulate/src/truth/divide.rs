@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use crate::What;
 use crate::nearest::Nearest;
 use crate::truth::cut::Cut;
-use crate::truth::placed::{Cell, Placed};
+use crate::truth::placed::{Cell, Placed, TOUCH_M};
 use crate::truth::tally::Tally;
 use crate::truth::{ROUNDING, SKIN_M};
 
@@ -44,21 +44,21 @@ pub(super) struct Divider<'a> {
     solids: &'a [Placed<'a>],
     /// The solids near a cell and, before them, those near the cells around it.
     near: Vec<Near>,
-    middle: Point3<f64>,
+    voxel: Cell,
     content: Content,
 }
 
 impl<'a> Divider<'a> {
     pub(super) fn new(solids: &'a [Placed<'a>]) -> Self {
-        let middle = Point3::origin();
-        Self { solids, near: Vec::new(), middle, content: Content::default() }
+        let voxel = Cell { centre: Point3::origin(), half: Vector3::zeros() };
+        Self { solids, near: Vec::new(), voxel, content: Content::default() }
     }
 
     /// What the solids that reach into a voxel make of it.
     pub(super) fn divide(&mut self, voxel: &Cell, near: &[Near]) -> &Content {
         self.near.clear();
         self.near.extend_from_slice(near);
-        self.middle = voxel.centre;
+        self.voxel = *voxel;
         (self.content.solid, self.content.open) = (0.0, false);
         self.content.surface_m = f64::INFINITY;
         self.content.surfaces.clear();
@@ -103,6 +103,14 @@ impl<'a> Divider<'a> {
         near.len() == 1 && flat_m >= distance_m.abs() + radius_m
     }
 
+    /// Whether a surface passes through a leaf. One that lies between two leaves of the voxel is
+    /// that of the solid one's.
+    fn passes(&self, cut: &Cut, foot: &Point3<f64>) -> bool {
+        let Cell { centre, half } = self.voxel;
+        let is_within = || (0..3).all(|axis| (foot - centre)[axis].abs() < half[axis] - TOUCH_M);
+        cut.area_m2 > 0.0 && cut.share > ROUNDING && (cut.share < 1.0 - ROUNDING || is_within())
+    }
+
     /// A leaf: every surface that borders on air cuts it as its plane would. Several cut it as if
     /// they stood at right angles.
     fn cut(&mut self, cell: &Cell, depth: u32, near: Range<usize>) {
@@ -117,9 +125,9 @@ impl<'a> Divider<'a> {
             let cut = Cut::new(&cell.half, &nearest.normal, nearest.distance_m);
             air *= 1.0 - cut.share;
             bordered = true;
-            if cut.passes() {
+            if self.passes(&cut, &foot) {
                 self.content.surfaces.add(what, cut.area_m2);
-                let from_middle_m = (foot - self.middle).norm();
+                let from_middle_m = (foot - self.voxel.centre).norm();
                 self.content.surface_m = self.content.surface_m.min(from_middle_m);
             }
         }

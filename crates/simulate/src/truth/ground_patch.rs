@@ -8,7 +8,7 @@ use parry3d_f64::shape::{Cuboid, TriMesh};
 
 use crate::Ground;
 use crate::convert::{from_parry, to_parry};
-use crate::mesh::meets;
+use crate::mesh::surface_gap_m;
 use crate::nearest::Nearest;
 
 /// A rectangle of the map, metres of the world.
@@ -71,10 +71,13 @@ impl<'a> GroundPatch<'a> {
         self.ground.contains(p).is_some()
     }
 
-    pub(super) fn overlaps(&self, cuboid: &Cuboid, world_from_cuboid: &ParryPose) -> bool {
+    pub(super) fn gap_m(&self, cuboid: &Cuboid, world_from_cuboid: &ParryPose) -> f64 {
         let centre = Point3::from(from_parry(world_from_cuboid.translation));
-        let meets = |surface| meets(surface, cuboid, world_from_cuboid);
-        self.contains(&centre) || self.surface.as_ref().is_some_and(meets)
+        match &self.surface {
+            _ if self.contains(&centre) => 0.0,
+            Some(surface) => surface_gap_m(surface, cuboid, world_from_cuboid),
+            None => f64::INFINITY,
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a grid's voxels are made of at a keyframe.
 
 use nalgebra::Vector3;
-use occlabel_core::{GridSpec, VoxelIndex, VoxelTruth};
+use occlabel_core::{ClassSet, GridSpec, VoxelIndex, VoxelTruth};
 use rayon::prelude::*;
 
 use crate::Drive;
@@ -11,8 +11,6 @@ use crate::truth::tally::Tally;
 
 /// Surfaces are looked for up to so many voxels from a voxel's centre.
 pub(super) const FARTHEST_VOXELS: f64 = 4.0;
-/// A solid that reaches less far into a voxel only touches it, metres.
-pub(super) const TOUCH_M: f64 = 1e-6;
 /// So many columns of voxels share one list of the solids near them.
 const COLUMNS_A_TILE: usize = 8;
 
@@ -83,10 +81,34 @@ impl<'a> Filler<'a> {
             (nearest.distance_m <= reach_m).then_some(Near { solid, nearest, what })
         }));
         let surface_m = self.exposed_m(&cell);
-        self.near.retain(|near| self.solids[near.solid].reaches(&cell, &near.nearest, TOUCH_M));
-        let found_m = if self.near.is_empty() { f64::INFINITY } else { self.judge(&cell, truth) };
+        let edge_m = self.spec.size_m().min();
+        let clear_m = self.clear_m(&cell, edge_m);
+        truth.clearance = (clear_m <= edge_m).then(|| (clear_m / edge_m) as f32);
+        self.near.retain(|near| self.solids[near.solid].reaches(&cell, &near.nearest));
+        let found_m = if self.near.is_empty() {
+            f64::INFINITY
+        } else {
+            truth.clearance = Some(0.0);
+            self.judge(&cell, truth)
+        };
         let nearest_m = surface_m.min(found_m).min(self.reach_m);
-        truth.surface_distance = (nearest_m / self.spec.size_m().min()) as f32;
+        truth.surface_distance = (nearest_m / edge_m) as f32;
+    }
+
+    /// From a cell to the nearest solid, if that is not farther than `most_m`.
+    fn clear_m(&self, cell: &Cell, most_m: f64) -> f64 {
+        let radius_m = cell.radius_m();
+        self.near.iter().fold(f64::INFINITY, |best_m, Near { solid, nearest, .. }| {
+            let is_nearer = nearest.distance_m - radius_m <= best_m.min(most_m);
+            let gap_m = || self.solids[*solid].gap_m(cell, nearest);
+            if nearest.distance_m < 0.0 {
+                0.0
+            } else if is_nearer {
+                best_m.min(gap_m())
+            } else {
+                best_m
+            }
+        })
     }
 
     /// From a cell's centre to the nearest surface that no other solid covers there.
@@ -119,7 +141,7 @@ impl<'a> Filler<'a> {
             &only_deepest
         };
         (truth.class, truth.instance) = parts.winner(self.drive);
-        truth.classes = if content.open { parts.classes(self.drive) } else { Default::default() };
+        truth.classes = if content.open { parts.classes(self.drive) } else { ClassSet::default() };
         content.surface_m
     }
 }

@@ -3,18 +3,21 @@
 //! The world of a keyframe is that of [`Drive::instant`] without the ego's own body, whatever any
 //! annotator or log says of it: poses, boxes and classes come from the world itself.
 //!
-//! - **Solid.** A voxel is solid above 0 if and only if some solid reaches into it by more than a
-//!   micrometre: a test of parry's, or of a plane's support, not a sample. The share is exact where
-//!   the solid is one plane within the voxel or a part of it; else the voxel is halved down to 1/16
-//!   of its edges, and only leaves on an edge or a curve, or where several surfaces meet, are
-//!   estimated, each by the planes nearest to its centre. The error is at most those leaves' share of
-//!   the volume: about 1/256 for an edge across the voxel; for a curve, whose planes are nearly it,
-//!   far less than their share.
+//! - **Solid.** A voxel is solid above 0 if and only if some solid reaches into it by more than some
+//!   micrometres: by parry's distance between two convex solids, or by a plane's own, not by samples.
+//!   The share is exact where the solid is one plane within the voxel or a part of it; else the voxel
+//!   is halved down to 1/16 of its edges, and only leaves on an edge or a curve, or where several
+//!   surfaces meet, are estimated, each by the planes nearest to its centre. The error is at most
+//!   those leaves' share of the volume: about 1/256 for an edge across the voxel; a curve's planes
+//!   are nearly it, so that its error is far less.
 //! - **Surface** is what borders on air. Where one solid lies against another, within a tenth of a
 //!   millimetre, there is none. A voxel's distance to the surface is that to the nearest place of
 //!   each solid that no other solid covers (and to the surfaces found within the voxel itself): a
 //!   solid whose nearest place is covered is not asked for its second nearest.
 //! - **Class** is that of the parts with most area in the voxel.
+//! - **Flow** is by the time that truly passes between a mover's two stances.
+//! - **Swept** is judged at the times of the other sweeps, as exactly as what is solid now; between
+//!   them nobody looked.
 //! - **Rays** are those of [`TrueRays`], moved as labels.md section 8 moves them, with the true boxes.
 
 mod cut;

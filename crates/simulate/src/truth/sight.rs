@@ -5,7 +5,7 @@ use occlabel_core::{Camera, Exposure, GridSpec, RigidMap, VoxelTruth};
 use rayon::prelude::*;
 
 use crate::truth::TruthAt;
-use crate::truth::matter::TOUCH_M;
+use crate::truth::placed::TOUCH_M;
 use crate::{Drive, Instant, Ray};
 
 /// A camera as it was exposed, and the world around it.

@@ -10,7 +10,6 @@ use rayon::prelude::*;
 use crate::Drive;
 use crate::bodies::Body;
 use crate::instant::mover_bodies;
-use crate::truth::matter::TOUCH_M;
 use crate::truth::placed::{Cell, Placed};
 use crate::truth::{SAME_TIME_S, TruthAt};
 
@@ -49,7 +48,7 @@ fn mark(body: &Body, grid_from_world: &Pose, spec: &GridSpec, seen: &[AtomicBool
         if !seen[flat].load(Ordering::Relaxed) {
             let cell = Cell { centre: spec.centre(voxel), half };
             let nearest = solid.nearest(&cell.centre).0;
-            if solid.reaches(&cell, &nearest, TOUCH_M) {
+            if solid.reaches(&cell, &nearest) {
                 seen[flat].store(true, Ordering::Relaxed);
             }
         }
