@@ -19,7 +19,8 @@ macro_rules! shipped {
 }
 
 /// All shipped worlds, that of the demo first.
-pub const WORLDS: &[ShippedWorld] = shipped!("street" "crossing");
+pub const WORLDS: &[ShippedWorld] =
+    shipped!("street" "crossing" "hill" "campus" "crowd" "highway" "scale");
 
 /// The text of a shipped world's file.
 pub fn shipped_world(name: &str) -> Option<&'static str> {
