@@ -5,14 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use occlabel_core::{
-    Fault, KeyframeSettings, KeyframeSource, OccupancyLabels, PointCloud, Pose, Scene, SweepHeader,
-    Taxonomy,
+    Fault, KeyframeSettings, KeyframeSource, OccupancyLabels, PointCloud, PointLabel, Pose, Scene,
+    SweepHeader, Taxonomy,
 };
 use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, SceneSource};
 use occlabel_pipeline::{
     Autos, Config, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset, shipped_taxonomy,
 };
-use occlabel_simulate::{Drive, Images, Output, World, render, write_nuscenes};
+use occlabel_simulate::{Drive, Images, Output, Return, World, render, write_nuscenes};
 use tempfile::TempDir;
 
 const TINY: &str = include_str!("tiny.toml");
@@ -154,9 +154,7 @@ fn keyframes_are_found_again_by_their_tokens() {
 }
 
 /// A cloud as a file of 32-bit numbers keeps it; the format knows one origin only.
-fn as_logged(
-    mut cloud: PointCloud<occlabel_core::PointLabel>,
-) -> PointCloud<occlabel_core::PointLabel> {
+fn as_logged(mut cloud: PointCloud<PointLabel>) -> PointCloud<PointLabel> {
     cloud.positions.iter_mut().for_each(|p| *p = p.cast::<f32>().cast::<f64>());
     PointCloud::from_one_origin(occlabel_core::LIDAR_ORIGIN, cloud.positions, cloud.labels)
 }
@@ -175,6 +173,31 @@ fn points_and_labels_are_those_of_the_drive() {
     assert!(points > 50_000 && labelled >= 5, "{points} points, {labelled} labelled");
 }
 
+#[test]
+fn labels_are_numbered_as_nuscenes_does_even_where_the_annotator_is_wrong() {
+    let text = TINY.replace("[ground]", "[annotator]\nmislabelled_points = 0.1\n\n[ground]");
+    let drive = drive(&text);
+    let folder = tempfile::tempdir().unwrap();
+    write(std::slice::from_ref(&drive), folder.path());
+    let log = open(folder.path());
+    let (mut count, mut wrong) = (0, 0);
+    for (sweep, header) in log.load("tiny").unwrap().sweeps.iter().enumerate() {
+        let (read, told) = (log.read_sweep(header).unwrap().cloud, drive.points(sweep));
+        assert_eq!(read.labels, told.labels);
+        let returns = drive.returns(sweep);
+        let right =
+            |(found, label): &(&Return, &PointLabel)| drive.label_of(found.hit.what) == **label;
+        if header.labelled {
+            wrong += returns.iter().zip(&told.labels).filter(|pair| !right(pair)).count();
+            count += returns.len();
+        }
+    }
+    assert!(wrong > count / 20 && wrong < count / 6, "{wrong} of {count}");
+    let file = folder.path().join("lidarseg/v1.0-sim/tiny-LIDAR_TOP-0_lidarseg.bin");
+    let road = std::fs::read(file).unwrap().into_iter().filter(|label| *label == 24).count();
+    assert!(road > 400, "{road} points of flat.driveable_surface");
+}
+
 fn rules() -> Rules {
     let autos = Autos {
         ego_box_m: None,
@@ -191,7 +214,7 @@ fn rules() -> Rules {
 fn labels(
     scene: &Scene,
     rules: &Rules,
-    points: impl Fn(&SweepHeader) -> PointCloud<occlabel_core::PointLabel> + Sync,
+    points: impl Fn(&SweepHeader) -> PointCloud<PointLabel> + Sync,
 ) -> OccupancyLabels {
     let read = |header: &_| Ok::<_, Fault>(Some(points(header)));
     let aggregated = aggregate_scene(scene, rules, read, |_| ()).unwrap();

@@ -48,7 +48,7 @@ pub fn write_mcap(
     images: Images,
     output: &Output,
 ) -> Result<(Written, String), Fault> {
-    let names = RawNames::new(taxonomy)?;
+    let names = RawNames::new(std::slice::from_ref(drive), taxonomy)?;
     let file = format!("{}.mcap", drive.scene().name);
     let mut log = DriveLog { drive, names, images, to: Recorder::create(output.stream(&file)?)? };
     let written = log.record()?;

@@ -42,7 +42,7 @@ pub fn write_nuscenes(
     output: &Output,
 ) -> Result<(Written, &'static str), Fault> {
     check_names(drives)?;
-    let names = RawNames::new(taxonomy)?;
+    let names = RawNames::new(drives, taxonomy)?;
     let labels = drives.iter().any(|drive| drive.scene().has_point_labels());
     let mut tables = Tables::create(output, labels)?;
     shared::push_shared_rows(&mut tables, &names, output)?;
