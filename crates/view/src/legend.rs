@@ -1,0 +1,68 @@
+//! Which colour means what.
+
+use image::{Rgb, RgbImage};
+
+use crate::canvas::{At, polygon};
+use crate::color::INK;
+use crate::font::{CAPITAL_ROWS, width_px, write};
+use crate::painted::{Painted, hidden};
+
+const STEP_PX: f64 = 1.75;
+const ROW_PX: f64 = 27.0;
+const SWATCH_PX: f64 = 15.0;
+const GAP_PX: f64 = 11.0;
+
+/// Swatches with their texts, from top to bottom.
+#[derive(Default)]
+pub(crate) struct Legend {
+    entries: Vec<(Rgb<u8>, String)>,
+}
+
+impl Legend {
+    /// The classes that occur in the labels.
+    pub(crate) fn of(labels: &Painted) -> Self {
+        let entry = |id: u8| (labels.palette.color(id), labels.palette.label(id));
+        Self { entries: labels.present().into_iter().map(entry).collect() }
+    }
+
+    /// The legend with one entry more.
+    pub(crate) fn with(mut self, color: Rgb<u8>, text: &str) -> Self {
+        self.entries.push((color, text.to_owned()));
+        self
+    }
+
+    /// The legend with what dull colours mean.
+    pub(crate) fn with_hidden(self) -> Self {
+        self.with(hidden(INK), "dull: no camera sees it")
+    }
+
+    /// How wide it is, pixels.
+    pub(crate) fn width_px(&self) -> f64 {
+        let texts = self.entries.iter().map(|(_, text)| width_px(text, STEP_PX));
+        SWATCH_PX + GAP_PX + texts.fold(0.0, f64::max)
+    }
+
+    /// How high it is, pixels.
+    pub(crate) fn height_px(&self) -> f64 {
+        self.entries.len() as f64 * ROW_PX
+    }
+
+    /// Draws it with its upper left corner at a place.
+    pub(crate) fn draw(&self, picture: &mut RgbImage, at: At) {
+        for (row, (color, text)) in self.entries.iter().enumerate() {
+            let left = At::new(at.x, at.y + (row as f64 + 0.5) * ROW_PX);
+            swatch(picture, left, *color);
+            let top = left.y - CAPITAL_ROWS / 2.0 * STEP_PX;
+            write(picture, At::new(at.x + SWATCH_PX + GAP_PX, top), STEP_PX, INK, text);
+        }
+    }
+}
+
+/// A square with round corners, its left side's middle at a place.
+fn swatch(picture: &mut RgbImage, left: At, color: Rgb<u8>) {
+    const ROUND_PX: f64 = 3.0;
+    let (near, far, half) = (left.x + ROUND_PX, left.x + SWATCH_PX - ROUND_PX, SWATCH_PX / 2.0);
+    let (top, bottom) = (left.y - half + ROUND_PX, left.y + half - ROUND_PX);
+    let corners = [(near, top), (far, top), (far, bottom), (near, bottom)];
+    polygon(picture, &corners.map(|(x, y)| At::new(x, y)), ROUND_PX, color);
+}
