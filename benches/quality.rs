@@ -8,7 +8,7 @@
 //! key of one), the rest set keys of the world. One JSON object a preset goes to stdout, the table
 //! to stderr. Everything happens in memory: what is read, no reader can have spoilt.
 
-use occlabel_core::{Keyframe, Scene, VoxelGrid};
+use occlabel_core::{Keyframe, VoxelGrid};
 use occlabel_evaluate::{JudgedLabels, KnownWorld, Scale, Tally, judge};
 use occlabel_occlusion::Eye;
 use occlabel_pipeline::{

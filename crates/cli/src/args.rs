@@ -26,7 +26,7 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Label a small drive that ships with the program, and show how to read the result.
+    /// Simulate a small street, label it, judge it against its exact truth, draw it.
     Demo(DemoArgs),
     /// Label a log: the main job.
     Label(Box<LabelArgs>),

@@ -1,125 +1,90 @@
-//! `demo`: the main job on a small drive that ships with the program.
+//! `demo`: a small street is simulated, labelled, judged against its exact truth, and drawn.
 
 use std::path::Path;
 
 use clap::Parser;
-use include_dir::{Dir, include_dir};
 use occlabel_core::Fault;
-use occlabel_labels::{
-    LabelArrays, LabelTree, Manifest, TreePath, create_dir, read_labels, write_file,
-};
+use occlabel_labels::{LabelTree, Manifest, TreePath, create_dir, read_labels, write_file};
+use occlabel_simulate::shipped_world;
+use occlabel_view::{BirdsEye, Orbit, Painted, Palette, birds_eye, perspective, png};
 
-use crate::args::{Cli, Command, DemoArgs};
+use crate::args::{Cli, DemoArgs};
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
-use crate::label;
 
-/// A simulated street, 3 keyframes and 9 sweeps, in nuScenes format.
-static DRIVE: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../tests/fixtures/nano");
+/// The world that is driven through.
+const WORLD: &str = "street";
+/// Longer side of the map from above, pixels: a whole number a voxel.
+const MAP_PX: u32 = 800;
+/// Size of the picture in perspective, pixels.
+const PERSPECTIVE_PX: (u32, u32) = (1600, 900);
 
 pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, Stop> {
-    let (log, labels) = (args.output.join("log"), args.output.join("labels"));
-    unpack(&DRIVE, &log)?;
-    let line = label_line(&log, &labels);
-    console.result(&format!("$ {}", line.join(" ")));
-    let outcome = label(&line, console)?;
-    show(&labels, console)?;
+    let [log, labels, pictures] =
+        ["log", "labels", "pictures"].map(|name| args.output.join(name).display().to_string());
+    let simulate =
+        ["occlabel", "simulate", "--world", WORLD, "--format", "nuscenes", "--output", &log];
+    let label = ["occlabel", "label", "--format", "nuscenes", "--input", &log, "--output", &labels];
+    let judge = ["occlabel", "quality", &labels, "--world-truth", &log];
+    if !has_log(Path::new(&log)) {
+        step(&simulate, console)?;
+    }
+    let outcome = step(&[&label[..], &["--evidence"]].concat(), console)?;
+    step(&judge, console)?;
+    draw(Path::new(&labels), Path::new(&pictures), console)?;
+    tell_next(console);
     Ok(outcome)
 }
 
-/// Writes the drive's files, those alone that are not there yet: a second demo finds its labels done.
-fn unpack(folder: &Dir, log: &Path) -> Result<(), Fault> {
-    create_dir(&log.join(folder.path()))?;
-    for file in folder.files() {
-        let path = log.join(file.path());
-        if std::fs::read(&path).ok().as_deref() != Some(file.contents()) {
-            write_file(&path, file.contents())?;
-        }
-    }
-    folder.dirs().try_for_each(|inner| unpack(inner, log))
+/// Whether an earlier demo drove through the same world: then its labels are found done.
+fn has_log(log: &Path) -> bool {
+    let driven = std::fs::read_to_string(log.join("truth/world.toml"));
+    driven.ok().as_deref() == shipped_world(WORLD)
 }
 
-fn label_line(log: &Path, labels: &Path) -> Vec<String> {
-    let (log, labels) = (log.display().to_string(), labels.display().to_string());
-    let words = [
-        "occlabel",
-        "label",
-        "--format",
-        "nuscenes",
-        "--input",
-        &log,
-        "--output",
-        &labels,
-        "--evidence",
-    ];
-    words.map(str::to_owned).to_vec()
-}
-
-fn label(line: &[String], console: &Console) -> Result<Outcome, Stop> {
+/// Runs a command line and shows it, so that it can be repeated.
+fn step(line: &[&str], console: &Console) -> Result<Outcome, Stop> {
+    console.result(&format!("$ {}", line.join(" ")));
     let cli = Cli::try_parse_from(line).expect("a line that the program takes");
-    match cli.command {
-        Command::Label(args) => label::run(&args, console),
-        _ => unreachable!("the line says label"),
-    }
+    let outcome = crate::dispatch(&cli.command, console)?;
+    console.result("");
+    Ok(outcome)
 }
 
-/// Draws the first keyframe, and says how to go on.
-fn show(labels: &Path, console: &Console) -> Result<(), Stop> {
-    let tree = LabelTree::new(labels);
+/// Draws the keyframe in the middle of the drive.
+fn draw(labels: &Path, pictures: &Path, console: &Console) -> Result<(), Stop> {
     let Some(manifest) = Manifest::load(&labels.join("manifest.json"))? else { return Ok(()) };
     let Some((scene, record)) = manifest.scenes.first_key_value() else { return Ok(()) };
-    let Some(token) = record.keyframes.first() else { return Ok(()) };
-    let file = tree.place(&TreePath::labels(scene, token)?);
-    let arrays = read_labels(&file, &manifest.grid.spec()?)?;
-    console.result("");
-    picture(&arrays, &manifest).iter().for_each(|row| console.result(row));
-    console.result("");
-    console.result(
-        "Read a keyframe:  import numpy; labels = numpy.load(FILE); labels['semantics'][x, y, z]",
-    );
-    console.result(&format!("FILE              {}", file.display()));
-    console.result("Your own log:     occlabel label --format nuscenes --input DIR --output DIR");
+    let Some(token) = record.keyframes.get(record.keyframes.len() / 2) else { return Ok(()) };
+    let spec = manifest.grid.spec()?;
+    let file = LabelTree::new(labels).place(&TreePath::labels(scene, token)?);
+    let arrays = read_labels(&file, &spec)?;
+    let names: Vec<&str> = manifest.classes.iter().map(|class| class.name.as_str()).collect();
+    let painted = Painted {
+        spec: &spec,
+        semantics: &arrays.semantics,
+        mask_lidar: &arrays.mask_lidar,
+        mask_camera: &arrays.mask_camera,
+        free: manifest.free,
+        palette: &Palette::of(&names),
+    };
+    write_pictures(&painted, pictures)?;
+    let look = pictures.display();
+    console.result(&format!("Look at     {look}/birds_eye.png and {look}/perspective.png"));
+    console.result(&format!("Read        numpy.load(\"{}\")[\"semantics\"]", file.display()));
     Ok(())
 }
 
-/// Voxels a side that one character of the picture stands for.
-const BLOCK: usize = 4;
-
-/// A bird's-eye view: the class of the topmost occupied voxel of each block, x up, y left.
-fn picture(arrays: &LabelArrays, manifest: &Manifest) -> Vec<String> {
-    let [nx, ny, _] = arrays.semantics.shape();
-    let row = |x: usize| (0..ny / BLOCK).rev().map(|y| block(arrays, manifest, x, y)).collect();
-    let mut rows: Vec<String> = (0..nx / BLOCK).rev().map(row).collect();
-    rows.push(
-        "# manmade  Y vegetation  = road  - sidewalk  , terrain  C vehicle  P pedestrian".into(),
-    );
-    rows.push("| barrier  . free or unobserved; x up, y left, ego in the middle".into());
-    rows
+fn write_pictures(labels: &Painted, pictures: &Path) -> Result<(), Fault> {
+    let (width, height) = PERSPECTIVE_PX;
+    create_dir(pictures)?;
+    let above = birds_eye(labels, &BirdsEye { map_px: MAP_PX });
+    write_file(&pictures.join("birds_eye.png"), &png(&above))?;
+    let behind = perspective(labels, &Orbit::behind(labels.spec, width, height));
+    write_file(&pictures.join("perspective.png"), &png(&behind))
 }
 
-fn block(arrays: &LabelArrays, manifest: &Manifest, x: usize, y: usize) -> char {
-    let (nz, free) = (arrays.semantics.shape()[2], manifest.free);
-    for z in (0..nz).rev() {
-        for (i, j) in (0..BLOCK * BLOCK).map(|at| (at / BLOCK, at % BLOCK)) {
-            let class = *arrays.semantics.at([x * BLOCK + i, y * BLOCK + j, z]);
-            if class != free {
-                return glyph(&manifest.classes[usize::from(class)].name);
-            }
-        }
-    }
-    '.'
-}
-
-fn glyph(class: &str) -> char {
-    match class {
-        "manmade" => '#',
-        "vegetation" => 'Y',
-        "driveable_surface" => '=',
-        "sidewalk" => '-',
-        "terrain" | "other_flat" => ',',
-        "pedestrian" => 'P',
-        "barrier" => '|',
-        "others" => 'o',
-        _ => 'C',
-    }
+fn tell_next(console: &Console) {
+    console.result("Your log    occlabel label --format nuscenes --input DIR --output LABELS");
+    console.result("Its quality occlabel quality --held-out 5 --format nuscenes --input DIR");
 }

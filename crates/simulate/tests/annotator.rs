@@ -232,17 +232,18 @@ fn boxes_drift_along_with_what_the_lidar_sees() {
 #[test]
 fn every_sensor_is_mounted_as_wrongly_as_told() {
     let drive = drive("calibration_m = 0.03\ncalibration_rad = 0.01");
-    let (world, scene) = (drive.world(), drive.scene());
-    let lidar = world.lidars[0].ego_from_lidar.inverse() * scene.sweeps[3].ego_from_lidar;
-    let camera = world.cameras[0].ego_from_camera.inverse() * drive.ego_from_camera(0);
+    let (world, poses) = (drive.world(), drive.poses());
+    let lidar = world.lidars[0].ego_from_lidar.inverse() * poses.ego_from_lidar[0];
+    let camera = world.cameras[0].ego_from_camera.inverse() * poses.ego_from_camera[0];
     for off in [lidar, camera] {
         assert!((off.translation.vector.norm() - 0.03).abs() < 1e-12, "{off}");
         assert!((off.rotation.angle() - 0.01).abs() < 1e-9, "{off}");
     }
     assert_ne!(lidar, camera);
+    assert_eq!(drive.scene().sweeps[3].ego_from_lidar, poses.ego_from_lidar[0]);
     let exposure = &drive.exposures(0)[6];
     assert_eq!(exposure.time, Timestamp(500_000_000));
-    let expected = world.world_from_ego(0.5) * drive.ego_from_camera(0);
+    let expected = world.world_from_ego(0.5) * poses.ego_from_camera[0];
     assert_eq!(exposure.world_from_camera, expected);
     assert_eq!(drive.scene().keyframes[1].exposures[0].world_from_camera, expected);
 }
@@ -256,18 +257,24 @@ fn what_is_measured_knows_nothing_of_the_faults() {
 }
 
 #[test]
-fn points_are_mislabelled_as_often_as_told() {
+fn points_are_mislabelled_as_often_as_told_and_can_be_logged() {
     let drive = drive("mislabelled_points = 0.2\npoint_labels = \"all\"");
     let (mut wrong, mut all) = (0, 0);
     for sweep in 0..10 {
         let (returns, labels) = (drive.returns(sweep), drive.points(sweep).labels);
         for (found, label) in returns.iter().zip(labels) {
             wrong += usize::from(label != drive.label_of(found.hit.what));
+            let raw = drive.raw_label(found.hit.what, label).unwrap();
+            let meaning = taxonomy().points[raw];
+            assert!(
+                matches!((meaning, label), (occlabel_core::Meaning::Class(a), PointLabel::Class(b)) if a == b)
+            );
             all += 1;
         }
     }
     assert!(all > 5_000, "{all}");
     assert_share(wrong, all, 0.2);
+    assert_eq!(drive.raw_label(What::Mover(0), PointLabel::Unlabelled), None);
 }
 
 /// How far, on average over its returns, a mover's box stands ahead of where the mover was at each

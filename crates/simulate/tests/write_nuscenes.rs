@@ -8,7 +8,7 @@ use occlabel_core::{
     Fault, KeyframeSettings, KeyframeSource, OccupancyLabels, PointCloud, PointLabel, Pose, Scene,
     SweepHeader, Taxonomy,
 };
-use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, SceneSource};
+use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use occlabel_pipeline::{
     Autos, Config, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset, shipped_taxonomy,
 };
@@ -70,15 +70,17 @@ fn write(drives: &[Drive], root: &Path) {
 
 fn open(root: &Path) -> NuScenesLog {
     let options = NuScenesOptions {
-        version: None,
-        scenes: None,
-        taxonomy: Arc::new(taxonomy()),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
+        read: ReadOptions {
+            scenes: None,
+            taxonomy: Arc::new(taxonomy()),
+            keyframes: KeyframeSettings {
+                source: KeyframeSource::Annotated,
+                stride: 1,
+                reference_lidar: "auto".into(),
+            },
+            unknown_as: None,
         },
-        unknown_as: None,
+        version: None,
         quaternion_order: QuaternionOrder::default(),
         columns: None,
     };
