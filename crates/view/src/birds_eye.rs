@@ -19,6 +19,8 @@ use crate::painted::{Painted, hidden};
 
 const MARGIN_PX: u32 = 28;
 const FOOT_PX: u32 = 46;
+/// Their step is at least a twentieth of the longest side, and they reach to half of it.
+const MOST_RINGS: u32 = 10;
 
 /// How the picture from above is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -66,12 +68,8 @@ fn map(labels: &Painted, view: &BirdsEye) -> RgbImage {
         let x = place(row, nx, height);
         let pixel = |at: u32| {
             let y = place(at, ny, width);
-            let ahead_left = if x + 1 < nx && y + 1 < ny {
-                columns[(x + 1) * ny + y + 1]
-            } else {
-                columns[x * ny + y]
-            };
-            color(labels, columns[x * ny + y], ahead_left, nz).0
+            let ahead_left = (x + 1).min(nx - 1) * ny + (y + 1).min(ny - 1);
+            color(labels, columns[x * ny + y], columns[ahead_left], nz).0
         };
         (0..width).flat_map(pixel).collect()
     };
@@ -114,10 +112,9 @@ fn mark_map(map: &mut RgbImage, labels: &Painted) {
     let ego = At::new(max_m.y, max_m.x) * scale;
     let longest_m = f64::from(map.width().max(map.height())) / scale;
     let step_m = marks::ring_step_m(labels.spec);
-    let mut radius_m = step_m;
-    while radius_m < longest_m / 2.0 {
+    let radii_m = (1..=MOST_RINGS).map(|ring| f64::from(ring) * step_m);
+    for radius_m in radii_m.take_while(|radius_m| *radius_m < longest_m / 2.0) {
         marks::ring(map, ego, radius_m * scale, radius_m);
-        radius_m += step_m;
     }
     let corner = |x: f64, y: f64| ego + Vector2::new(x, y);
     marks::ego(map, [corner(0.0, -13.0), corner(-8.5, 9.0), corner(0.0, 4.5), corner(8.5, 9.0)]);

@@ -45,3 +45,53 @@ fn look_down(labels: &Painted, voxels: std::ops::Range<usize>, cameras: bool) ->
         None => Column::Unobserved,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use occlabel_core::{GridSpec, VoxelGrid};
+
+    use super::*;
+    use crate::Palette;
+
+    const FREE: u8 = 9;
+
+    /// The look of one column of four voxels, bottom first.
+    fn look(semantics: [u8; 4], lidar: [u8; 4], camera: [u8; 4], cameras: bool) -> Column {
+        let spec = GridSpec::new([0.0; 3], [1.0, 2.0, 4.0], [1.0; 3]).unwrap();
+        let grid = |values: [u8; 4], other: u8| {
+            VoxelGrid::from_values(&spec, [values, [other; 4]].concat())
+        };
+        let labels = Painted {
+            spec: &spec,
+            semantics: &grid(semantics, FREE),
+            mask_lidar: &grid(lidar, 0),
+            mask_camera: &grid(camera, u8::from(cameras)),
+            free: FREE,
+            palette: &Palette::of(&["a"]),
+        };
+        columns(&labels)[0]
+    }
+
+    #[test]
+    fn the_topmost_occupied_voxel_stands_for_its_column() {
+        let column = |camera| look([3, FREE, 4, FREE], [1; 4], camera, true);
+        let seen = Column::Occupied { class: 4, z: 2, hidden: false };
+        assert_eq!(column([0, 0, 1, 0]), seen);
+        assert_eq!(column([1, 1, 0, 1]), Column::Occupied { class: 4, z: 2, hidden: true });
+        assert_eq!(seen.top(), Some(3));
+    }
+
+    #[test]
+    fn an_empty_column_is_free_as_soon_as_one_voxel_was_observed() {
+        let column = |lidar, camera| look([FREE; 4], lidar, camera, true);
+        assert_eq!(column([0; 4], [0; 4]), Column::Unobserved);
+        assert_eq!(column([0, 1, 0, 0], [0, 1, 0, 0]), Column::Free { hidden: false });
+        assert_eq!(column([0, 1, 0, 0], [0; 4]), Column::Free { hidden: true });
+    }
+
+    #[test]
+    fn without_cameras_nothing_is_hidden_from_them() {
+        let column = look([3, FREE, FREE, FREE], [1; 4], [0; 4], false);
+        assert_eq!(column, Column::Occupied { class: 3, z: 0, hidden: false });
+    }
+}

@@ -24,13 +24,18 @@ pub(crate) fn ring_step_m(spec: &GridSpec) -> f64 {
     round_length_m(extent_m.x.max(extent_m.y) / 8.0)
 }
 
+/// A length as a text, to the millimetre.
+fn metres(length_m: f64) -> String {
+    format!("{} m", (length_m * 1000.0).round() / 1000.0)
+}
+
 /// A ring around a place, with its radius written where it is highest.
 pub(crate) fn ring(picture: &mut RgbImage, middle: At, radius_px: f64, radius_m: f64) {
     let reach = Vector2::repeat(radius_px + 1.0);
     paint(picture, (middle - reach, middle + reach), INK, 0.3, |p| {
         ((p - middle).norm() - radius_px).abs() - 0.6
     });
-    let text = format!("{radius_m} m");
+    let text = metres(radius_m);
     let at = At::new(middle.x + 6.0, middle.y - radius_px + 6.0);
     for (dx, dy) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
         write(picture, at + Vector2::new(dx, dy), STEP_PX, PAPER, &text);
@@ -60,7 +65,7 @@ pub(crate) fn scale_bar(picture: &mut RgbImage, at: At, length_px: f64, length_m
         line(picture, Stroke { from: side - tick, to: side + tick }, LINE_PX, INK);
     }
     let top = at.y - CAPITAL_ROWS / 2.0 * STEP_PX;
-    write(picture, At::new(end.x + 10.0, top), STEP_PX, INK, &format!("{length_m} m"));
+    write(picture, At::new(end.x + 10.0, top), STEP_PX, INK, &metres(length_m));
 }
 
 /// The ways in which x and y grow: up and to the left; the texts' right end at a place.
@@ -89,6 +94,11 @@ fn arrow(picture: &mut RgbImage, middle: At, way: Vector2<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_length_reads_as_one_would_write_it() {
+        assert_eq!([metres(3.0 * 0.1), metres(40.0), metres(0.002)], ["0.3 m", "40 m", "0.002 m"]);
+    }
 
     #[test]
     fn a_round_length_is_the_largest_that_fits() {

@@ -76,7 +76,7 @@ fn backdrop(y: u32, height: u32) -> Rgb<u8> {
 fn mark_ego(scene: &mut RgbImage, lens: &Lens, spec: &GridSpec) {
     let extent_m = spec.max_m() - spec.min_m();
     let size_m = extent_m.x.max(extent_m.y) / 40.0;
-    let dart = [(1.4, 0.0), (-0.9, 0.8), (-0.4, 0.0), (-0.9, -0.8)];
+    let dart = [(1.7, 0.0), (-1.0, 0.7), (-0.5, 0.0), (-1.0, -0.7)];
     let corners = dart.map(|(x, y)| lens.project(&Point3::new(x * size_m, y * size_m, 0.0)));
     if let [Some(nose), Some(left), Some(notch), Some(right)] = corners {
         marks::ego(scene, [nose, left, notch, right]);

@@ -38,13 +38,9 @@ pub(crate) fn sky_light(hit: &Hit, at: &Vector3<f64>, solid: impl Fn([i64; 3]) -
         solid(voxel)
     };
     let corner = |da: i64, db: i64| {
-        let (side_a, side_b) = (over(da, 0), over(0, db));
-        let count = if side_a && side_b {
-            3
-        } else {
-            i32::from(side_a) + i32::from(side_b) + i32::from(over(da, db))
-        };
-        1.0 - CORNER_SHADE * f64::from(count)
+        let sides = i32::from(over(da, 0)) + i32::from(over(0, db));
+        let hidden = if sides == 2 { 3 } else { sides + i32::from(over(da, db)) };
+        1.0 - CORNER_SHADE * f64::from(hidden)
     };
     let (share_a, share_b) = (at[a] - hit.voxel[a] as f64, at[b] - hit.voxel[b] as f64);
     let blend = |low: f64, high: f64, share: f64| low + (high - low) * share;
@@ -63,4 +59,36 @@ pub(crate) fn joint_light(hit: &Hit, at: &Vector3<f64>, voxel_px: f64) -> f64 {
     };
     let off_px = off((hit.axis + 1) % 3).min(off((hit.axis + 2) % 3)) * voxel_px;
     1.0 - JOINT_SHADE * strength * (1.0 - off_px).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn top() -> Hit {
+        Hit { voxel: [5, 5, 5], flat: Some(0), axis: 2, normal: 1, t: 1.0 }
+    }
+
+    #[test]
+    fn a_wall_beside_a_face_darkens_its_side_and_not_the_other() {
+        let wall = |voxel: [i64; 3]| voxel[0] == 6 && voxel[2] == 6;
+        let light = |x: f64| sky_light(&top(), &Vector3::new(x, 5.5, 6.0), wall);
+        assert!((light(5.0) - 1.0).abs() < 1e-12);
+        assert!((light(6.0) - (1.0 - 2.0 * CORNER_SHADE)).abs() < 1e-12, "side and corner");
+        assert!((light(5.5) - (1.0 - CORNER_SHADE)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_corner_between_two_walls_is_as_dark_as_can_be() {
+        let walls = |voxel: [i64; 3]| voxel[2] == 6 && (voxel[0] == 6) != (voxel[1] == 6);
+        let light = sky_light(&top(), &Vector3::new(6.0, 6.0, 6.0), walls);
+        assert!((light - (1.0 - 3.0 * CORNER_SHADE)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn joints_show_on_large_voxels_only() {
+        let light = |y: f64, px: f64| joint_light(&top(), &Vector3::new(5.5, y, 6.0), px);
+        assert_eq!(light(5.0, 20.0), 1.0 - JOINT_SHADE);
+        assert_eq!([light(5.5, 20.0), light(5.0, 2.0)], [1.0, 1.0]);
+    }
 }
