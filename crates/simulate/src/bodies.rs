@@ -65,6 +65,12 @@ impl Bodies {
         self.bodies.iter()
     }
 
+    /// What the bodies' bounds are, in the order they were given.
+    #[cfg(test)]
+    pub(crate) fn bounds(&self) -> Vec<Aabb> {
+        self.bodies.iter().map(Body::bounds).collect()
+    }
+
     /// The first body on a ray, at most `max_m` away.
     pub(crate) fn cast(&self, ray: &Ray, max_m: f64) -> Option<Hit> {
         let meet = |at: u32, best_m: f64| {

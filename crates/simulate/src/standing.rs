@@ -112,3 +112,79 @@ fn set_on(pose: &mut Pose, ground: &Ground) {
     let foot = pose.translation;
     pose.translation = foot * Translation3::new(0.0, 0.0, ground.surface_m(foot.x, foot.y));
 }
+
+#[cfg(test)]
+mod tests {
+    use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
+
+    use crate::{WORLDS, World};
+
+    /// What is farther apart does not touch, metres.
+    const TOUCH_M: f64 = 0.03;
+
+    /// Whether some point below the bounds lies in the ground.
+    fn is_grounded(world: &World, bounds: &Aabb) -> bool {
+        let (low, high) = (bounds.mins, bounds.maxs);
+        let share = |at: i32| f64::from(at) / 10.0;
+        (0..=10).flat_map(|i| (0..=10).map(move |j| [share(i), share(j)])).any(|[i, j]| {
+            let (x, y) = (low.x + i * (high.x - low.x), low.y + j * (high.y - low.y));
+            world.ground.surface_m(x, y) > low.z - TOUCH_M
+        })
+    }
+
+    /// Bounds that stand on the ground or, over others, on those that do.
+    fn held(world: &World, all: &[Aabb]) -> Vec<bool> {
+        let mut held: Vec<bool> = all.iter().map(|bounds| is_grounded(world, bounds)).collect();
+        let mut growing = true;
+        while growing {
+            growing = false;
+            for at in 0..all.len() {
+                let near = all[at].loosened(TOUCH_M);
+                if !held[at] && (0..all.len()).any(|on| held[on] && near.intersects(&all[on])) {
+                    (held[at], growing) = (true, true);
+                }
+            }
+        }
+        held
+    }
+
+    #[test]
+    fn nothing_that_stands_in_a_shipped_world_floats() {
+        let mut count = 0;
+        for shipped in WORLDS {
+            let world = World::parse(shipped.text, shipped.name).unwrap();
+            let all = world.standing.bounds();
+            let floating = held(&world, &all).iter().position(|held| !held);
+            assert_eq!(floating.map(|at| all[at]), None, "{}", shipped.name);
+            count += all.len();
+        }
+        assert!(count > 500, "{count}");
+    }
+
+    #[test]
+    fn copies_stand_on_the_slope_and_on_the_kerb() {
+        let posts = r#"
+            [[static]]
+            class = "pole"
+            pose.position_m = [10.0, 3.0, 0.5]
+            shape.box.size_m = [0.1, 0.1, 1.0]
+            on_ground = true
+            repeat = { count = 3, step_m = [20.0, 1.0, 0.0] }
+            [ground]
+            slope = [0.1, 0.0]
+            bands = [{ until_y_m = 3.5, class = "road" }, { class = "sidewalk", raise_m = 0.2 }]
+        "#;
+        #[derive(serde::Deserialize)]
+        struct File {
+            ground: crate::Ground,
+            r#static: Vec<super::StaticFile>,
+        }
+        let file: File = toml::from_str(posts).unwrap();
+        let (bodies, classes) = super::standing(&file.r#static, &file.ground).unwrap();
+        let feet: Vec<f64> = bodies.bounds().iter().map(|bounds| bounds.mins.z).collect();
+        for (found, expected) in feet.iter().zip([1.0, 3.2, 5.2]) {
+            assert!((found - expected).abs() < 1e-5, "{feet:?}");
+        }
+        assert_eq!(classes, ["pole"; 3]);
+    }
+}
