@@ -4,7 +4,8 @@
 //! cargo bench --bench quality -- crossing precise,occ3d-nuscenes,paper annotator.missing_boxes=0.1
 //! ```
 //!
-//! The first argument names a world, the second the presets (`precise+states.conflict=ratio` sets a
+//! The first argument names a world (`crossing/5`: every fifth keyframe is judged), the second the
+//! presets (`precise+states.conflict=ratio` sets a
 //! key of one), the rest set keys of the world. One JSON object a preset goes to stdout, the table
 //! to stderr. Everything happens in memory: what is read, no reader can have spoilt.
 
@@ -22,11 +23,13 @@ use occlabel_simulate::{
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).filter(|arg| arg != "--bench").collect();
     let world = args.first().map_or("street", String::as_str);
+    let (world, every) = world.split_once('/').unwrap_or((world, "1"));
+    let every: usize = every.parse().expect("every how many-th keyframe");
     let presets = args.get(1).map_or("precise", String::as_str);
     let drive = drive(world, args.get(2..).unwrap_or_default());
     let rays = TrueRays::cast(&drive);
     for preset in presets.split(',') {
-        let quality = label_and_judge(&drive, &rays, &rules(&drive, preset)).quality();
+        let quality = label_and_judge(&drive, &rays, &rules(&drive, preset), every).quality();
         eprintln!("{world}, {preset}\n{}", quality.table());
         let judged = serde_json::json!({ "world": world, "preset": preset, "quality": quality });
         println!("{judged}");
@@ -59,14 +62,14 @@ fn rules(drive: &Drive, preset_and_keys: &str) -> Rules {
     Rules::new(&config, taxonomy.into()).expect("rules")
 }
 
-fn label_and_judge(drive: &Drive, rays: &TrueRays, rules: &Rules) -> Tally {
+fn label_and_judge(drive: &Drive, rays: &TrueRays, rules: &Rules, every: usize) -> Tally {
     let scene = drive.scene();
     let read = |header: &_| {
         let sweep = drive.sweep_number(header).expect("a sweep of the drive");
         Ok::<_, std::convert::Infallible>(Some(drive.points(sweep)))
     };
     let Ok(aggregated) = aggregate_scene(scene, rules, read, |_| {});
-    let frames = places(drive, rules);
+    let frames: Vec<_> = places(drive, rules).into_iter().step_by(every).collect();
     let settings = TruthSettings {
         window_s: rules.window.window_s,
         deformable_window_s: rules.window.deformable_window_s,

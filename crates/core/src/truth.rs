@@ -18,6 +18,9 @@ pub struct VoxelTruth {
     /// The class that most of its surface to the air has (of its volume, if it is full); none if
     /// it is empty, or of a part that has no class.
     pub class: Option<ClassId>,
+    /// The class that most of its `ends` are of, the lowest on ties: what labels.md section 7 would
+    /// make of points that all carry their true class. None without ends.
+    pub hit_class: Option<ClassId>,
     /// All classes whose surface to the air passes through it.
     pub classes: ClassSet,
     /// The mover that it belongs to, if its class is that of one.

@@ -170,6 +170,14 @@ impl Drive {
         self.labels.of(what)
     }
 
+    /// The true class of a part of the world; none if its label is ignored.
+    pub(crate) fn class_of(&self, what: What) -> Option<ClassId> {
+        match self.label_of(what) {
+            PointLabel::Class(class) => Some(class),
+            PointLabel::Unlabelled | PointLabel::Ignored => None,
+        }
+    }
+
     /// The raw label of a point of a part of the world that is logged with a label; none if it is
     /// unlabelled.
     pub fn raw_label(&self, what: What, logged: PointLabel) -> Option<&str> {

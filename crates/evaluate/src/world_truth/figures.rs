@@ -82,6 +82,7 @@ pub(crate) const FIGURES: &[Figure] = &[
         count: |basis| asked(&basis.accuracies),
     },
     share!("A5p", "class_present", "... a class that passes the voxel", OCCUPIED, true, ClassPresent),
+    share!("A5h", "class_hit", "... the class most rays met there", OCCUPIED, true, ClassHit),
     size!("A7", "occupied_distance_voxels", "centre to surface, voxels: mean", OCCUPIED, mean, OccupiedDistance),
     size!("A7p", "occupied_distance_p95_voxels", "... 95th percentile", OCCUPIED, percentile_95, OccupiedDistance),
     Figure {
@@ -122,8 +123,9 @@ pub(crate) const FIGURES: &[Figure] = &[
     share!("A6", "mask_lidar_iou", "lidar, with exact visibility", MASKS, false, MaskLidar),
     share!("A6c", "mask_camera_iou", "cameras, the rule on exact voxels", MASKS, false, MaskCamera),
     share!("A6g", "mask_camera_sight_iou", "cameras, true lines of sight", MASKS, false, MaskCameraSight),
-    size!("FE", "flow_error_mps", "end-point error: mean", MOTION, mean, FlowError),
+    size!("FE", "flow_error_mps", "right class: end-point error, mean", MOTION, mean, FlowError),
     size!("FEp", "flow_error_p95_mps", "... 95th percentile", MOTION, percentile_95, FlowError),
+    size!("FEa", "flow_error_all_mps", "any class: end-point error, mean", MOTION, mean, FlowErrorAll),
     share!("FEn", "flow_missing", "truth has one, the label has not", MOTION, true, FlowMissing),
     share!("FEs", "static_flow", "stands still, labelled as moving", MOTION, true, StaticFlow),
 ];

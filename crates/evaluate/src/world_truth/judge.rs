@@ -188,6 +188,9 @@ fn class(pair: &Pair, ring: &mut Ring) {
     let is_present = pair.truth.classes.contains(label);
     ring.count(Question::ClassAccuracy, Some(class), is_right);
     ring.count(Question::ClassPresent, Some(class), is_right || is_present);
+    if let Some(hit) = pair.truth.hit_class {
+        ring.count(Question::ClassHit, Some(hit), label == hit);
+    }
 }
 
 /// A3, A4 and A8.
@@ -217,7 +220,11 @@ fn motion(pair: &Pair, flow: [f32; 3], ring: &mut Ring) {
         let is_missing = flow.iter().any(|v| !v.is_finite());
         ring.count(Question::FlowMissing, class, is_missing);
         if !is_missing {
-            ring.measure(Size::FlowError, class, distance(flow, truth.flow));
+            let error_mps = distance(flow, truth.flow);
+            ring.measure(Size::FlowErrorAll, class, error_mps);
+            if pair.label == class {
+                ring.measure(Size::FlowError, class, error_mps);
+            }
         }
     }
 }

@@ -17,6 +17,7 @@ pub(crate) enum Question {
     OccupiedPrecisionNoise,
     ClassAccuracy,
     ClassPresent,
+    ClassHit,
     SurfaceRecall,
     SurfaceRecallDense,
     FreePurity,
@@ -36,10 +37,11 @@ pub(crate) enum Size {
     OccupiedDistance,
     SurfaceDistance,
     FlowError,
+    FlowErrorAll,
 }
 
 const QUESTIONS: usize = Question::StaticFlow as usize + 1;
-const SIZES: usize = Size::FlowError as usize + 1;
+const SIZES: usize = Size::FlowErrorAll as usize + 1;
 
 /// The counts of one ring and class.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -31,10 +31,10 @@ pub fn dense_ends(
     (0..drive.scene().sweeps.len()).into_par_iter().for_each(|sweep| {
         let (lidar, number) = drive.taken_by(sweep);
         let dense = Lidar { pattern: lidar.pattern.denser(DENSER), ..lidar.clone() };
-        let rays = SweepRays::cast(drive.world(), &dense, number);
+        let rays = SweepRays::cast(drive, &dense, number);
         for (target, counts) in targets.iter().zip(&counts) {
             if target.is_within(&rays, settings.window_s) {
-                target.each_end(&rays, |flat| {
+                target.ends(&rays).for_each(|(flat, _)| {
                     counts[flat].fetch_add(1, Ordering::Relaxed);
                 });
             }

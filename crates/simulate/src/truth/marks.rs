@@ -3,18 +3,20 @@
 use std::ops::ControlFlow;
 
 use nalgebra::Point3;
-use occlabel_core::{GridSpec, GrownBox, Pose, RigidMap, Timestamp, VoxelGrid, walk};
+use occlabel_core::{ClassId, GridSpec, GrownBox, Pose, RigidMap, Timestamp, VoxelGrid, walk};
 use rayon::prelude::*;
 
-use crate::Drive;
 use crate::truth::rays::{NOT_GROWN, SweepRays, TrueRays};
 use crate::truth::{SAME_TIME_S, TruthAt, TruthSettings};
+use crate::{Drive, What};
 
 /// Where rays end, and what they pass through on the way.
 #[derive(Clone, Debug)]
 pub(super) struct Marks {
     pub(super) ends: VoxelGrid<u32>,
     pub(super) crossed: VoxelGrid<bool>,
+    /// The class that most ends are of.
+    pub(super) hit_class: VoxelGrid<Option<ClassId>>,
 }
 
 /// A keyframe's grid, as rays of other times meet it.
@@ -32,6 +34,7 @@ struct Stance {
     grid_from_box: RigidMap,
     true_box: GrownBox,
     is_deformable: bool,
+    class: Option<ClassId>,
 }
 
 /// Marks all rays in a keyframe's grid. Parallel over sweeps.
@@ -48,7 +51,9 @@ pub(super) fn mark_rays(
     let mut marks = target.mark_all(&then, Marks::cross);
     target.forget_air_in_boxes(&mut marks);
     marks.add(&target.mark_all(&now, Marks::cross));
-    marks.add(&target.mark_all(&[then, now].concat(), Marks::end));
+    let all = [then, now].concat();
+    marks.add(&target.mark_all(&all, Marks::end));
+    marks.hit_class = target.hit_classes(&all);
     marks
 }
 
@@ -64,6 +69,7 @@ impl<'a> Target<'a> {
                 grid_from_box: RigidMap::from(&pose),
                 true_box: GrownBox::new(&stands.size_m, &NOT_GROWN),
                 is_deformable: mover.parts.iter().any(|part| part.pivot.is_some()),
+                class: drive.class_of(What::Mover(number)),
             }
         };
         Self {
@@ -87,6 +93,7 @@ impl<'a> Target<'a> {
         let none = || Marks {
             ends: VoxelGrid::filled(self.spec, 0),
             crossed: VoxelGrid::filled(self.spec, false),
+            hit_class: VoxelGrid::filled(self.spec, None),
         };
         let share = sweeps.len().div_ceil(rayon::current_num_threads()).max(1);
         let marked = sweeps.par_chunks(share).map(|sweeps| {
@@ -112,12 +119,31 @@ impl<'a> Target<'a> {
         rays.filter(move |(_, stance)| lasts || !stance.is_deformable)
     }
 
-    /// Calls a function with the place of each voxel in which a ray of the sweep ends.
-    pub(super) fn each_end(&self, sweep: &SweepRays, mut visit: impl FnMut(usize)) {
-        let fixed = sweep.fixed.positions.iter().map(|end| self.grid_from_world.apply(end));
+    /// The voxel in which each ray of the sweep ends, by its place, and the class that it met.
+    pub(super) fn ends(&self, sweep: &SweepRays) -> impl Iterator<Item = (usize, Option<ClassId>)> {
+        let met = sweep.fixed.positions.iter().zip(&sweep.fixed.labels);
+        let fixed = met.map(|(end, class)| (self.grid_from_world.apply(end), *class));
+        let moving = self.moving(sweep);
         let moving =
-            self.moving(sweep).map(|(ray, stance)| stance.grid_from_box.apply(&ray.box_end));
-        fixed.chain(moving).filter_map(|end| self.spec.flat_of(&end)).for_each(&mut visit);
+            moving.map(|(ray, stance)| (stance.grid_from_box.apply(&ray.box_end), stance.class));
+        fixed.chain(moving).filter_map(|(end, class)| Some((self.spec.flat_of(&end)?, class)))
+    }
+
+    /// Of each voxel the class that most ends are of, the lowest on ties.
+    fn hit_classes(&self, sweeps: &[&SweepRays]) -> VoxelGrid<Option<ClassId>> {
+        let known = |sweep: &&SweepRays| {
+            self.ends(sweep).filter_map(|(flat, class)| Some((flat as u32, class?))).collect()
+        };
+        let ends: Vec<Vec<(u32, ClassId)>> = sweeps.par_iter().map(known).collect();
+        let mut ends = ends.concat();
+        ends.par_sort_unstable();
+        let mut most = VoxelGrid::filled(self.spec, None);
+        for voxel in ends.chunk_by(|a, b| a.0 == b.0) {
+            let classes = voxel.chunk_by(|a, b| a.1 == b.1);
+            let best = classes.rev().max_by_key(|alike| alike.len());
+            most.values_mut()[voxel[0].0 as usize] = best.map(|alike| alike[0].1);
+        }
+        most
     }
 
     /// Air seen at another time says nothing about where a mover stands now.
@@ -155,7 +181,7 @@ impl Marks {
     /// stand now.
     fn end(&mut self, target: &Target, sweep: &SweepRays) {
         let ends = self.ends.values_mut();
-        target.each_end(sweep, |flat| ends[flat] += 1);
+        target.ends(sweep).for_each(|(flat, _)| ends[flat] += 1);
         for (ray, stance) in target.moving(sweep) {
             let place = &stance.grid_from_box;
             self.walk(target.spec, &place.apply(&ray.box_end), &place.apply(&ray.box_entry));

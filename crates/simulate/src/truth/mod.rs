@@ -94,6 +94,7 @@ pub fn keyframe_truth(
     for (flat, voxel) in voxels.iter_mut().enumerate() {
         voxel.ends = marks.ends.values()[flat];
         voxel.crossed = marks.crossed.values()[flat];
+        voxel.hit_class = marks.hit_class.values()[flat];
         voxel.dense_ends = dense_ends.map_or(0, |ends| ends.values()[flat]);
     }
     truth

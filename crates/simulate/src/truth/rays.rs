@@ -1,7 +1,7 @@
 //! Every ray of a drive as it truly ran.
 
 use nalgebra::Point3;
-use occlabel_core::{BoxGrowth, GrownBox, LIDAR_ORIGIN, PointCloud, Pose, Timestamp};
+use occlabel_core::{BoxGrowth, ClassId, GrownBox, LIDAR_ORIGIN, PointCloud, Pose, Timestamp};
 use rayon::prelude::*;
 
 use crate::lidar::{Lidar, Return};
@@ -22,7 +22,7 @@ pub struct TrueRays {
 pub(super) struct SweepRays {
     pub(super) time: Timestamp,
     /// Rays that end on what stands; world.
-    pub(super) fixed: PointCloud<()>,
+    pub(super) fixed: PointCloud<Option<ClassId>>,
     pub(super) moving: Vec<MoverRay>,
 }
 
@@ -47,7 +47,7 @@ impl TrueRays {
     pub fn cast(drive: &Drive) -> Self {
         let cast = |sweep| {
             let (lidar, number) = drive.taken_by(sweep);
-            SweepRays::cast(drive.world(), lidar, number)
+            SweepRays::cast(drive, lidar, number)
         };
         Self { sweeps: (0..drive.scene().sweeps.len()).into_par_iter().map(cast).collect() }
     }
@@ -55,7 +55,8 @@ impl TrueRays {
 
 impl SweepRays {
     /// Casts the rays of one sweep of a lidar.
-    pub(super) fn cast(world: &World, lidar: &Lidar, number: usize) -> Self {
+    pub(super) fn cast(drive: &Drive, lidar: &Lidar, number: usize) -> Self {
+        let world = drive.world();
         let time = lidar.shot_time(number, 0);
         let fixed = PointCloud::with_origins(Vec::new());
         let mut rays = Self { time, fixed, moving: Vec::new() };
@@ -63,20 +64,22 @@ impl SweepRays {
         for shots in returns.chunk_by(|a, b| a.time == b.time) {
             let world_from_lidar = lidar.world_from_lidar(world, shots[0].time);
             rays.fixed.origins.push(world_from_lidar * LIDAR_ORIGIN);
-            shots.iter().for_each(|found| rays.add(world, &world_from_lidar, found));
+            shots.iter().for_each(|found| rays.add(drive, &world_from_lidar, found));
         }
         rays
     }
 
     /// Adds a ray of the newest origin.
-    fn add(&mut self, world: &World, world_from_lidar: &Pose, found: &Return) {
+    fn add(&mut self, drive: &Drive, world_from_lidar: &Pose, found: &Return) {
         let end = world_from_lidar * found.position_m;
         let origin = (self.fixed.origins.len() - 1) as u32;
         match found.hit.what {
-            What::Ground(_) | What::Static(_) => self.fixed.push(end, (), origin),
+            What::Ground(_) | What::Static(_) => {
+                self.fixed.push(end, drive.class_of(found.hit.what), origin);
+            }
             What::Mover(mover) => {
                 let origin = self.fixed.origins[origin as usize];
-                self.moving.push(MoverRay::new(world, mover, found.time, origin, end));
+                self.moving.push(MoverRay::new(drive.world(), mover, found.time, origin, end));
             }
             What::Ego => {}
         }

@@ -1,6 +1,6 @@
 //! Whose a voxel is.
 
-use occlabel_core::{ClassId, ClassSet, PointLabel, TrackId};
+use occlabel_core::{ClassId, ClassSet, TrackId};
 
 use crate::{Drive, What};
 
@@ -26,14 +26,14 @@ impl Tally {
 
     /// The classes of all parts.
     pub(super) fn classes(&self, drive: &Drive) -> ClassSet {
-        self.0.iter().filter_map(|&(what, _)| class_of(drive, what)).collect()
+        self.0.iter().filter_map(|&(what, _)| drive.class_of(what)).collect()
     }
 
     /// The class that has most, the lowest on ties; and the mover that has most of it, if any.
     pub(super) fn winner(&self, drive: &Drive) -> (Option<ClassId>, Option<TrackId>) {
-        let by_class = self.0.iter().map(|&(what, amount)| (class_of(drive, what), amount));
+        let by_class = self.0.iter().map(|&(what, amount)| (drive.class_of(what), amount));
         let class = most(by_class);
-        let of_class = self.0.iter().filter(|(what, _)| class_of(drive, *what) == class);
+        let of_class = self.0.iter().filter(|(what, _)| drive.class_of(*what) == class);
         (class, most(of_class.map(|&(what, amount)| (track_of(what), amount))))
     }
 }
@@ -53,13 +53,6 @@ fn most<K: Ord + Copy>(amounts: impl Iterator<Item = (Option<K>, f64)>) -> Optio
         if wins { next } else { best }
     });
     best.map(|(key, _)| key)
-}
-
-fn class_of(drive: &Drive, what: What) -> Option<ClassId> {
-    match drive.label_of(what) {
-        PointLabel::Class(class) => Some(class),
-        PointLabel::Unlabelled | PointLabel::Ignored => None,
-    }
 }
 
 /// Movers are tracks in their order, from 1 on.
