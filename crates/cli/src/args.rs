@@ -142,6 +142,8 @@ pub(crate) struct LabelArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("format", |arg| arg.required(false)))]
+#[command(mut_arg("input", |arg| arg.required(false)))]
 pub(crate) struct QualityArgs {
     /// Label trees to judge by --world-truth; those of one grid share the work.
     #[arg(value_name = "DIR", requires = "world_truth")]
