@@ -72,7 +72,7 @@ fn exposure(
     };
     let pose = pose_from_matrix(&image.world_from_ego);
     let pose = pose.map_err(|found| {
-        frame.place.fault("camera-pose", format!("a pose of {name} of {A_POSE}"), found)
+        image.place.fault("camera-pose", format!("a pose of {name} of {A_POSE}"), found)
     });
     let world_from_ego = notes.accept(Loss::Camera, pose)?;
     let world_from_camera = world_from_ego * camera.ego_from_camera;

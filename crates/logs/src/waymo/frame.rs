@@ -56,9 +56,9 @@ pub(super) fn read_frame<S: Read + Seek>(
     let world_from_ego = pose_from_matrix(&pose)
         .map_err(|found| place.fault("frame-pose", format!("a frame's pose of {A_POSE}"), found))?;
     let lidars = lidars(source, &fields).map_err(broken)?;
-    let images = fields.all(IMAGES).map(|span| image(source, span));
+    let images = fields.all(IMAGES).map(|span| image(source, span, &place));
     let images = images.filter_map(Result::transpose).collect::<Result<_, _>>().map_err(broken)?;
-    let boxes = fields.all(LABELS).map(|span| box_label(source, span));
+    let boxes = fields.all(LABELS).map(|span| box_label(source, span, &place));
     let boxes = boxes.collect::<Result<_, _>>().map_err(broken)?;
     let time = Timestamp::from_micros(micros);
     Ok((Frame { place, time, world_from_ego, lidars, images, boxes }, context))
@@ -127,16 +127,24 @@ fn lidars<S: Read + Seek>(source: &mut S, frame: &Fields) -> Result<Vec<(Lidar, 
 }
 
 /// An image of a camera that has a name.
-fn image<S: Read + Seek>(source: &mut S, span: Span) -> Result<Option<Image>, Defect> {
+fn image<S: Read + Seek>(
+    source: &mut S,
+    span: Span,
+    frame: &Place,
+) -> Result<Option<Image>, Defect> {
     let image = Fields::read(source, span)?;
     let Some(camera) = image.integer(1).and_then(camera_name) else { return Ok(None) };
     let world_from_ego = transform(source, image.bytes(3))?;
     let seconds = |number| image.double(number).unwrap_or(f64::NAN);
     let readout_s = seconds(8) - seconds(7) - seconds(6);
-    Ok(Some(Image { camera, world_from_ego, time_s: seconds(5), readout_s }))
+    Ok(Some(Image { place: frame.clone(), camera, world_from_ego, time_s: seconds(5), readout_s }))
 }
 
-fn box_label<S: Read + Seek>(source: &mut S, span: Span) -> Result<BoxLabel, Defect> {
+fn box_label<S: Read + Seek>(
+    source: &mut S,
+    span: Span,
+    frame: &Place,
+) -> Result<BoxLabel, Defect> {
     let label = Fields::read(source, span)?;
     let track = label.bytes(4).map(|id| text(source, id)).transpose()?.unwrap_or_default();
     let upright = match label.bytes(1) {
@@ -145,6 +153,7 @@ fn box_label<S: Read + Seek>(source: &mut S, span: Span) -> Result<BoxLabel, Def
     };
     let number = |field| upright.double(field).unwrap_or(f64::NAN);
     Ok(BoxLabel {
+        place: Place { offset: Some(span.start), ..frame.clone() },
         track,
         kind: label.integer(3).unwrap_or(0),
         center_m: Vector3::new(number(1), number(2), number(3)),

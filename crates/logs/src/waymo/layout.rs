@@ -19,7 +19,7 @@ pub(super) enum Layout {
 }
 
 /// The component of v2 without which no frame has a place.
-const VEHICLE_POSE: &str = "vehicle_pose";
+pub(super) const VEHICLE_POSE: &str = "vehicle_pose";
 /// What a Parquet file begins with.
 const PARQUET: &[u8] = b"PAR1";
 

@@ -6,10 +6,18 @@
 mod calibration;
 mod cameras;
 mod classes;
+#[cfg(feature = "waymo-v2")]
+mod component_images;
+#[cfg(feature = "waymo-v2")]
+mod components;
 mod compressed;
 mod frame;
 mod layout;
 mod matrix;
+#[cfg(feature = "waymo-v2")]
+mod parquet_cursor;
+#[cfg(feature = "waymo-v2")]
+mod parquet_table;
 mod range_image;
 mod scene;
 mod segment;
@@ -21,6 +29,7 @@ mod transform;
 mod wire;
 
 use std::path::Path;
+use std::slice;
 
 use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, SweepHeader};
 
@@ -28,6 +37,8 @@ use crate::names::{nearest_names, quoted};
 use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
 use classes::PointClasses;
+#[cfg(feature = "waymo-v2")]
+use components::Components;
 use layout::Layout;
 use range_image::{RangeImages, points};
 use segment::{LidarCalibration, Place, Segment};
@@ -50,6 +61,8 @@ pub struct WaymoLog {
 #[derive(Debug)]
 enum Version {
     V1(TfRecords),
+    #[cfg(feature = "waymo-v2")]
+    V2(Components),
 }
 
 impl WaymoLog {
@@ -67,11 +80,17 @@ impl WaymoLog {
     }
 
     /// What the format itself says where the configuration says `"auto"`: known before the log is
-    /// opened, at the price of finding its frames.
+    /// opened, at the price of one file.
     ///
     /// # Errors
     /// If the folder holds neither version, or no frame can be read.
     pub fn format_defaults(root: &Path) -> Result<ReaderDefaults, Fault> {
+        if let Layout::V1(files) = Layout::of_folder(root)? {
+            let of_file = |file: &String| Version::V1(TfRecords::open(root, slice::from_ref(file)));
+            if let Some(defaults) = files.iter().find_map(|file| of_file(file).defaults().ok()) {
+                return Ok(defaults);
+            }
+        }
         Version::open(root)?.defaults()
     }
 }
@@ -82,11 +101,19 @@ impl SceneSource for WaymoLog {
     }
 
     fn tables(&self) -> Vec<String> {
-        Vec::new()
+        match &self.version {
+            Version::V1(_) => Vec::new(),
+            #[cfg(feature = "waymo-v2")]
+            Version::V2(log) => self.names.iter().flat_map(|name| log.tables(name)).collect(),
+        }
     }
 
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {
-        vec![sweep.file.clone()]
+        match (&self.version, SweepId::parse(&sweep.source_id)) {
+            #[cfg(feature = "waymo-v2")]
+            (Version::V2(log), Some(id)) => log.sweep_files(&id, sweep),
+            _ => vec![sweep.file.clone()],
+        }
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {
@@ -121,6 +148,9 @@ impl Version {
     fn open(root: &Path) -> Result<Self, Fault> {
         match Layout::of_folder(root)? {
             Layout::V1(files) => Ok(Self::V1(TfRecords::open(root, &files))),
+            #[cfg(feature = "waymo-v2")]
+            Layout::V2 => Components::open(root).map(Self::V2),
+            #[cfg(not(feature = "waymo-v2"))]
             Layout::V2 => {
                 let expected = "a program built with the cargo feature `waymo-v2`";
                 Err(Fault::new("waymo-v2", root.display().to_string(), expected, "one without it"))
@@ -131,12 +161,16 @@ impl Version {
     fn names(&self) -> Vec<String> {
         match self {
             Self::V1(log) => log.names().cloned().collect(),
+            #[cfg(feature = "waymo-v2")]
+            Self::V2(log) => log.names().to_vec(),
         }
     }
 
     fn segment(&self, name: &str) -> Option<Result<Segment, Fault>> {
         match self {
             Self::V1(log) => log.segment(name),
+            #[cfg(feature = "waymo-v2")]
+            Self::V2(log) => log.segment(name),
         }
     }
 
@@ -147,12 +181,16 @@ impl Version {
     ) -> Result<(RangeImages, LidarCalibration), Fault> {
         match self {
             Self::V1(log) => log.images(id, sweep),
+            #[cfg(feature = "waymo-v2")]
+            Self::V2(log) => log.images(id, sweep),
         }
     }
 
     fn defaults(&self) -> Result<ReaderDefaults, Fault> {
         let lidars = match self {
             Self::V1(log) => log.any_lidars()?,
+            #[cfg(feature = "waymo-v2")]
+            Self::V2(log) => log.any_lidars()?,
         };
         let names: Vec<String> =
             lidars.iter().map(|calibration| calibration.lidar.name().to_owned()).collect();

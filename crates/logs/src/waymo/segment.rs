@@ -60,6 +60,7 @@ pub(super) struct Frame {
 /// One camera's image.
 #[derive(Debug)]
 pub(super) struct Image {
+    pub(super) place: Place,
     pub(super) camera: &'static str,
     /// 4 x 4, rows first.
     pub(super) world_from_ego: Vec<f64>,
@@ -72,6 +73,7 @@ pub(super) struct Image {
 /// One box, in the vehicle's frame.
 #[derive(Debug)]
 pub(super) struct BoxLabel {
+    pub(super) place: Place,
     pub(super) track: String,
     pub(super) kind: i64,
     pub(super) center_m: Vector3<f64>,
@@ -131,6 +133,12 @@ impl Lidar {
     pub(super) fn of_name(name: &str) -> Option<Self> {
         let place = LIDARS.iter().position(|known| *known == name)?;
         Self::of_number(place as i64 + 1)
+    }
+
+    /// Its number.
+    #[cfg(feature = "waymo-v2")]
+    pub(super) fn number(self) -> i64 {
+        self.0.into()
     }
 
     /// Its name.

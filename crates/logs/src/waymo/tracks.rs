@@ -55,11 +55,11 @@ fn boxes_by_id<'a>(
             let track = by_id.entry(label.track.clone()).or_insert_with(empty);
             if track.kind != label.kind {
                 let expected = format!("type {} of `{}`", box_type(track.kind), label.track);
-                let fault = frame.place.fault("track-type", expected, box_type(label.kind));
+                let fault = label.place.fault("track-type", expected, box_type(label.kind));
                 notes.refuse(Loss::Annotation, fault);
             } else if track.boxes.insert(frame.time, boxed).is_some() {
                 let found = format!("two of `{}`", label.track);
-                return Err(frame.place.fault("track-time", "one box of a track at a time", found));
+                return Err(label.place.fault("track-time", "one box of a track at a time", found));
             }
         }
     }
@@ -70,15 +70,15 @@ fn boxes_by_id<'a>(
 fn read_box(frame: &Frame, label: &BoxLabel) -> Result<Box3, Fault> {
     let BoxLabel { track, center_m, size_m, heading_rad, .. } = label;
     if track.is_empty() {
-        return Err(frame.place.fault("box-id", "a box with an id", "none"));
+        return Err(label.place.fault("box-id", "a box with an id", "none"));
     }
     if !size_m.iter().all(|side| side.is_finite() && *side > 0.0) {
         let found = format!("{} x {} x {} m of `{track}`", size_m.x, size_m.y, size_m.z);
-        return Err(frame.place.fault("box-size", "length, width and height above 0", found));
+        return Err(label.place.fault("box-size", "length, width and height above 0", found));
     }
     if !center_m.iter().chain([heading_rad]).all(|number| number.is_finite()) {
         let found = format!("{:?}, {heading_rad} of `{track}`", center_m.as_slice());
-        return Err(frame.place.fault("box-pose", "a finite centre and heading", found));
+        return Err(label.place.fault("box-pose", "a finite centre and heading", found));
     }
     let world_from_box = frame.world_from_ego * upright(center_m, *heading_rad);
     Ok(Box3 { world_from_box, size_m: *size_m })

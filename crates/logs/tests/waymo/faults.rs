@@ -272,3 +272,11 @@ fn a_folder_of_neither_version_says_what_it_should_hold() {
     std::fs::write(root.path().join("frames"), record(&frames()[0])).unwrap();
     assert!(WaymoLog::open(root.path(), options()).is_ok(), "told by content, not by name");
 }
+
+#[cfg(not(feature = "waymo-v2"))]
+#[test]
+fn a_program_without_v2_says_which_feature_it_lacks() {
+    let fault = WaymoLog::open(&crate::log::fixtures().join("v2"), options()).unwrap_err();
+    assert_eq!(fault.rule, "waymo-v2");
+    assert!(fault.expected.contains("`waymo-v2`"), "{fault}");
+}

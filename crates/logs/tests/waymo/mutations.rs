@@ -3,10 +3,16 @@
 use occlabel_core::Fault;
 use occlabel_logs::{SceneSource, WaymoLog};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use crate::log::{folder_of, frames, options};
 use crate::message::{edit, recompressed, record};
+
+/// Runs the same cases every time, so that their outcomes can be counted.
+pub(crate) fn runner(cases: u32) -> TestRunner {
+    let config = Config { failure_persistence: None, ..Config::with_cases(cases) };
+    TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
+}
 
 /// A byte of a whole, as a share, and what it becomes.
 fn damage() -> impl Strategy<Value = (f64, u8)> {
@@ -37,8 +43,7 @@ fn read_all(file: &[u8]) -> Result<usize, Fault> {
 /// Runs cases of damage; how many left nothing, some, and all of a frame's five sweeps.
 fn outcomes(cases: u32, damage_to: impl Fn(&[(f64, u8)]) -> Vec<u8>) -> [usize; 3] {
     let counts = std::cell::RefCell::new([0; 3]);
-    let mut runner =
-        TestRunner::new(Config { failure_persistence: None, ..Config::with_cases(cases) });
+    let mut runner = runner(cases);
     let strategy = prop::collection::vec(damage(), 1..6);
     let run = runner.run(&strategy, |damage| {
         let place = match read_all(&damage_to(&damage)) {

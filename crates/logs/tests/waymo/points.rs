@@ -8,11 +8,11 @@ use crate::log::{MICROS, expected_points, fixtures, options};
 /// The largest distance of a point, and of an origin, from where it should be, metres; and how many
 /// points were looked at, labelled ones apart.
 #[derive(Debug, Default, PartialEq)]
-struct Comparison {
-    off_m: f64,
+pub(crate) struct Comparison {
+    pub(crate) off_m: f64,
     origin_off_m: f64,
-    points: usize,
-    labelled: usize,
+    pub(crate) points: usize,
+    pub(crate) labelled: usize,
 }
 
 impl Comparison {
@@ -39,7 +39,7 @@ impl Comparison {
 }
 
 /// How far a log's points are from those that its writer computed.
-fn compare(log: &WaymoLog) -> Comparison {
+pub(crate) fn compare(log: &WaymoLog) -> Comparison {
     let mut expected = expected_points();
     let scene = log.load(&log.scene_names()[0]).unwrap();
     let mut comparison = Comparison::default();
@@ -65,8 +65,8 @@ fn v1_range_images_decode_to_their_writers_points() {
 }
 
 /// Points of the fixture, and the labelled among them.
-const POINTS: usize = 1496;
-const LABELLED: usize = 509;
+pub(crate) const POINTS: usize = 1496;
+pub(crate) const LABELLED: usize = 509;
 
 #[test]
 fn section_2_each_lidar_has_its_own_origin_and_the_top_one_moves_with_its_pixels() {
