@@ -12,7 +12,7 @@ use super::transform::{A_POSE, pose_from_matrix};
 use super::wire::{Defect, Fields, Span};
 
 /// A segment's sensors.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Context {
     pub(super) lidars: Vec<LidarCalibration>,
     pub(super) cameras: Vec<CameraCalibration>,

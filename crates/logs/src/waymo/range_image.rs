@@ -193,3 +193,68 @@ impl<'a> Motion<'a> {
         Column { pose, map, origin }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use occlabel_core::{ClassId, Timestamp};
+
+    use super::*;
+
+    fn sweep() -> SweepHeader {
+        SweepHeader {
+            time: Timestamp(0),
+            lidar: "TOP".into(),
+            source_id: "s/0/TOP".into(),
+            file: "f".into(),
+            world_from_ego: Pose::identity(),
+            ego_from_lidar: Pose::translation(0.0, 0.0, 2.0),
+            labelled: true,
+        }
+    }
+
+    /// An image of one row, each pixel a return at 10 m; the last lies in a no-label zone.
+    fn images(width: i32) -> RangeImages {
+        let zone = |j| if j == width - 1 { 1.0 } else { -1.0 };
+        let pixels = (0..width).flat_map(|j| [10.0, 0.5, 0.0, zone(j)]).collect();
+        let labels = (0..width).flat_map(|j| [7, j]).collect();
+        let pixels = Matrix::new(&[1, width, 4], PIXEL, pixels).unwrap();
+        let labels = Matrix::new(&[1, width, 2], LABEL, labels).ok();
+        RangeImages { returns: vec![Return { pixels, labels }], poses: None }
+    }
+
+    fn class(raw: i32) -> PointLabel {
+        PointLabel::Class(ClassId(raw as u8))
+    }
+
+    #[test]
+    fn columns_go_round_from_behind_over_the_left_to_behind() {
+        let cloud = points(&images(4), &[0.0], &sweep(), class);
+        let half = 10.0 * std::f64::consts::FRAC_1_SQRT_2;
+        let expected = [[-half, half], [half, half], [half, -half], [-half, -half]];
+        for (point, [x, y]) in cloud.positions.iter().zip(expected) {
+            assert!((point - Point3::new(x, y, 0.0)).norm() < 1e-12, "{point}");
+        }
+    }
+
+    #[test]
+    fn fault_28_a_point_in_a_no_label_zone_is_unlabelled() {
+        let cloud = points(&images(3), &[0.0], &sweep(), class);
+        assert_eq!(cloud.labels, [class(0), class(1), PointLabel::Unlabelled]);
+    }
+
+    #[test]
+    fn pixels_that_move_have_origins_of_their_own_and_near_ones_share() {
+        let mut image = images(1);
+        let x = [0.0, 0.00005, 0.00009, 0.5];
+        let pixels = [10.0, 0.5, 0.0, -1.0].repeat(x.len());
+        image.returns[0] =
+            Return { pixels: Matrix::new(&[4, 1, 4], PIXEL, pixels).unwrap(), labels: None };
+        let poses = x.iter().flat_map(|&x| [0.0, 0.0, 0.0, x, 0.0, 0.0]).collect();
+        image.poses = Matrix::new(&[4, 1, 6], POSE, poses).ok();
+        let cloud = points(&image, &[0.0; 4], &sweep(), class);
+        assert_eq!(cloud.origin_of, [1, 1, 1, 2]);
+        assert!((cloud.origin(3) - Point3::new(0.5, 0.0, 0.0)).norm() < 1e-12);
+        let step_m = (cloud.positions[3] - cloud.positions[1]).norm();
+        assert!((step_m - 0.49995).abs() < 1e-7, "points move by their own poses: {step_m}");
+    }
+}

@@ -82,9 +82,9 @@ impl TfRecords {
     /// # Errors
     /// If there is none.
     pub(super) fn any_lidars(&self) -> Result<Vec<LidarCalibration>, Fault> {
-        let mut fault = Fault::new("waymo-layout", ".", "a frame", "none");
+        let mut fault = Fault::new("frame-message", ".", "a frame", "none");
         for segment in self.segments.values() {
-            for frame in segment.frames.iter().take(1) {
+            for frame in &segment.frames {
                 match self.frame(frame) {
                     Ok((_, context)) => return Ok(context.lidars),
                     Err(broken) => fault = broken,
@@ -98,7 +98,7 @@ impl TfRecords {
     /// Everything of a segment but its points; `None` if there is no such segment.
     ///
     /// # Errors
-    /// If a file of it is broken, or the first frame.
+    /// If a file of it is broken, or every frame.
     pub(super) fn segment(&self, name: &str) -> Option<Result<Segment, Fault>> {
         let index = self.segments.get(name)?;
         Some(match &index.fault {
@@ -108,34 +108,16 @@ impl TfRecords {
     }
 
     fn read_segment(&self, index: &SegmentIndex) -> Result<Segment, Fault> {
-        let (mut context, mut warnings) = (None::<Context>, Vec::new());
-        let mut frames: Vec<Result<Frame, Fault>> = Vec::with_capacity(index.frames.len());
-        for (i, at) in index.frames.iter().enumerate() {
-            let before = i.checked_sub(1).map(|before| &index.frames[before]);
-            if before.is_some_and(|before| self.is_copy(before, at)) {
-                warnings.push(
-                    frame_place(&at.file, at.record(), &format!("frame {}", at.micros)).fault(
-                        "frame-time",
-                        "one frame at a time",
-                        "a copy",
-                    ),
-                );
-                continue;
-            }
-            match (self.frame(at), &context) {
-                (Err(fault), None) => return Err(fault),
-                (Err(fault), Some(_)) => frames.push(Err(fault)),
-                (Ok((frame, own)), Some(first)) if own.lidars != first.lidars => {
-                    let expected = "the lidar calibrations of the segment's first frame";
-                    frames.push(Err(frame.place.fault("lidar-changed", expected, "others")));
-                }
-                (Ok((frame, own)), _) => {
-                    context.get_or_insert(own);
-                    frames.push(Ok(frame));
-                }
-            }
-        }
-        let Context { lidars, cameras } = context.unwrap_or_default();
+        let is_copy = |i: &usize| *i > 0 && self.is_copy(&index.frames[i - 1], &index.frames[*i]);
+        let (copies, once): (Vec<usize>, Vec<usize>) = (0..index.frames.len()).partition(is_copy);
+        let warnings = copies.into_iter().map(|i| copied(&index.frames[i])).collect();
+        let frames: Vec<_> = once.into_iter().map(|i| self.frame(&index.frames[i])).collect();
+        let context = frames.iter().flatten().next().map(|(_, context)| context.clone());
+        let Some(Context { lidars, cameras }) = context else {
+            let none = || Fault::new("frame-message", ".", "a frame", "none");
+            return Err(frames.into_iter().find_map(Result::err).unwrap_or_else(none));
+        };
+        let frames = frames.into_iter().map(|frame| same_lidars(frame?, &lidars)).collect();
         Ok(Segment { lidars, cameras, frames, warnings })
     }
 
@@ -177,6 +159,23 @@ impl TfRecords {
         let data = data.map_err(|fault| fault.record(&sweep.source_id))?;
         lidar_images(&data, (id.lidar, sweep.labelled), &place, at.start)
     }
+}
+
+fn copied(frame: &FrameAt) -> Fault {
+    let place = frame_place(&frame.file, frame.record(), &format!("frame {}", frame.micros));
+    place.fault("frame-time", "one frame at a time", "a copy")
+}
+
+/// The frame, if its lidars are those of the segment.
+fn same_lidars(
+    (frame, context): (Frame, Context),
+    lidars: &[LidarCalibration],
+) -> Result<Frame, Fault> {
+    if context.lidars == lidars {
+        return Ok(frame);
+    }
+    let expected = "the lidar calibrations of the segment's first frame";
+    Err(frame.place.fault("lidar-changed", expected, "others"))
 }
 
 /// Adds a file's frames to the segments, and the names of these to `names`.
