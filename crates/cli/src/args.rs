@@ -224,7 +224,10 @@ pub(crate) enum ImagesArg {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
+    /// JSON tables, and a file of points for each sweep.
     Nuscenes,
+    /// Waymo Open Dataset: TFRecord files (v1), or Parquet components (v2).
+    Waymo,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,6 +1,6 @@
 //! Which of a scene's files are there, found out without reading them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -23,27 +23,38 @@ pub struct Inventory {
 pub struct MissingFile {
     /// Its path below the log's root.
     pub file: String,
-    /// The sweep that it belongs to, by its place in the scene.
+    /// The first sweep that it belongs to, by its place in the scene.
     pub sweep: usize,
-    /// Whether a keyframe refers to that sweep.
+    /// Whether a keyframe refers to a sweep that it belongs to.
     pub is_reference: bool,
 }
 
 impl Inventory {
-    /// Looks for every file of the scene's sweeps below the log's root.
+    /// Looks for every file of the scene's sweeps below the log's root. One that many sweeps share
+    /// counts once.
     pub fn take(source: &dyn SceneSource, root: &Path, scene: &Scene) -> Self {
         let references: BTreeSet<usize> = scene.keyframes.iter().map(|frame| frame.sweep).collect();
-        let mut inventory = Self::default();
+        let (mut inventory, mut seen) = (Self::default(), HashMap::new());
         for (sweep, header) in scene.sweeps.iter().enumerate() {
             for file in source.sweep_files(header) {
-                let is_reference = references.contains(&sweep);
-                match size(&root.join(&file)) {
-                    Some(bytes) => inventory.present.push((file, bytes)),
-                    None => inventory.missing.push(MissingFile { file, sweep, is_reference }),
+                let place =
+                    seen.entry(file.clone()).or_insert_with(|| inventory.look(root, file, sweep));
+                if let Some(missing) = place.and_then(|place| inventory.missing.get_mut(place)) {
+                    missing.is_reference |= references.contains(&sweep);
                 }
             }
         }
         inventory
+    }
+
+    /// Looks for a file; its place among the missing, if it is one.
+    fn look(&mut self, root: &Path, file: String, sweep: usize) -> Option<usize> {
+        if let Some(bytes) = size(&root.join(&file)) {
+            self.present.push((file, bytes));
+            return None;
+        }
+        self.missing.push(MissingFile { file, sweep, is_reference: false });
+        Some(self.missing.len() - 1)
     }
 
     /// Bytes of the files that are there.

@@ -14,7 +14,6 @@ const EXPOSURE_WITHIN_S: f64 = 0.1;
 ///
 /// # Errors
 /// If the scene has no sweep of the wanted lidar.
-#[allow(dead_code)] // The readers to come use it.
 pub(crate) fn keyframes(
     settings: &KeyframeSettings,
     scene: &str,

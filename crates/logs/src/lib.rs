@@ -19,13 +19,18 @@
 //! [`Scene`]: occlabel_core::Scene
 //! [`Fault`]: occlabel_core::Fault
 
+mod files;
 mod inventory;
 mod keyframes;
+mod names;
+mod notes;
 mod nuscenes;
 mod options;
 mod source;
+mod waymo;
 
 pub use inventory::{Inventory, MissingFile};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder};
 pub use options::ReadOptions;
 pub use source::{ReaderDefaults, SceneSource, SweepPoints};
+pub use waymo::WaymoLog;

@@ -20,7 +20,6 @@ pub struct ReadOptions {
 
 impl ReadOptions {
     /// Whether a scene is wanted.
-    #[allow(dead_code)] // The readers to come use it.
     pub(crate) fn wants(&self, scene: &str) -> bool {
         self.scenes.as_ref().is_none_or(|wanted| wanted.contains(scene))
     }
@@ -32,7 +31,6 @@ impl ReadOptions {
     }
 
     /// What a raw point label means; `None` if it is unknown and no class stands in for it.
-    #[allow(dead_code)] // The readers to come use it.
     pub(crate) fn point_label(&self, raw: &str) -> Option<PointLabel> {
         match self.taxonomy.points.get(raw) {
             Some(Meaning::Class(class)) => Some(PointLabel::Class(*class)),

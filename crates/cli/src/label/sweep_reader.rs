@@ -19,9 +19,9 @@ pub(crate) struct SweepReader<'a> {
 #[derive(Default)]
 pub(crate) struct Book {
     warnings: Vec<Fault>,
-    /// Sweeps that were left out, by their file.
+    /// Sweeps that were left out, by their id.
     lost: BTreeMap<String, Fault>,
-    /// Points without finite coordinates, by the file of their sweep.
+    /// Points without finite coordinates, by the file of their sweeps.
     not_finite: BTreeMap<String, usize>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> SweepReader<'a> {
         let not_finite = read.as_ref().map_or(0, |points| count_not_finite(&points.cloud));
         let mut book = self.book.lock().expect("no reader panicked");
         if not_finite > 0 {
-            book.not_finite.insert(sweep.file.clone(), not_finite);
+            *book.not_finite.entry(sweep.file.clone()).or_default() += not_finite;
         }
         match read {
             Ok(points) => {
@@ -47,7 +47,7 @@ impl<'a> SweepReader<'a> {
                 Ok(Some(points.cloud))
             }
             Err(fault) if self.may_lose(&fault) => {
-                book.lost.insert(sweep.file.clone(), fault);
+                book.lost.insert(sweep.source_id.clone(), fault);
                 Ok(None)
             }
             Err(fault) => Err(fault),
@@ -62,13 +62,14 @@ impl<'a> SweepReader<'a> {
     /// The book, in an order that does not depend on threads.
     pub(crate) fn close(self) -> Book {
         let mut book = self.book.into_inner().expect("no reader panicked");
-        book.warnings.sort_by(|a, b| (&a.place, a.rule).cmp(&(&b.place, b.rule)));
+        book.warnings
+            .sort_by(|a, b| (&a.place, a.rule, &a.record).cmp(&(&b.place, b.rule, &b.record)));
         book
     }
 }
 
 impl Book {
-    /// Points without finite coordinates, by the file of their sweep.
+    /// Points without finite coordinates, by the file of their sweeps.
     pub(crate) fn not_finite(&self) -> BTreeMap<String, usize> {
         self.not_finite.clone()
     }
@@ -90,7 +91,7 @@ impl Book {
 
     /// What a keyframe lost with its reference sweep, if that was left out.
     pub(crate) fn refusal_of(&self, scene: &Scene, keyframe: &Keyframe) -> Option<Fault> {
-        let cause = self.lost.get(&scene.reference_sweep(keyframe).file)?;
+        let cause = self.lost.get(&scene.reference_sweep(keyframe).source_id)?;
         let expected = "the reference sweep of a keyframe";
         let fault = Fault::new("keyframe", &cause.place, expected, &cause.found);
         Some(fault.record(format!("keyframe {}, which is not labelled", keyframe.token)))

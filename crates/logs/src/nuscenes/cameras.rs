@@ -7,8 +7,8 @@ use occlabel_core::{Exposure, Fault, Loss, NamedCamera, Pose, Timestamp};
 use super::NuScenesLog;
 use super::captures::Capture;
 use super::keyframes::Moment;
-use super::notes::Notes;
 use super::optics::camera_of;
+use crate::notes::Notes;
 
 /// `camera_bits` has one bit for each camera.
 const MAX_CAMERAS: usize = 16;

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, HashSet};
 
 use occlabel_core::{Fault, Timestamp};
 
-use super::files::name_defect;
 use super::rows::{CalibratedSensor, SampleData};
 use super::table::{Row, repeated};
 use super::tables::{SceneRows, Tables};
+use crate::files::name_defect;
 
 /// A row of sample_data, with what its tokens stand for.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::captures::Capture;
-use super::files::read_file;
-use super::notes::Notes;
+use crate::files::read_file;
+use crate::notes::Notes;
 
 /// The sweeps without repetitions: of those of one lidar and time that hold the same bytes, one
 /// stays, a key frame's if one is. Others of one lidar and time all stay. Both is noted.

@@ -6,11 +6,11 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Timestamp};
 
 use super::captures::Capture;
-use super::files::is_folder_name;
-use super::notes::Notes;
 use super::rows::{Sample, SampleData};
 use super::table::{Row, Table};
 use super::token::Token;
+use crate::files::is_folder_name;
+use crate::notes::Notes;
 
 /// The reference lidar's key sweep of each sample: what tells a sample's time.
 #[derive(Debug)]

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use occlabel_core::Fault;
 
-use super::files::name_defect;
 use super::rows::{Lidarseg, Panoptic};
 use super::table::{Row, Table, read_table};
 use super::token::Token;
+use crate::files::name_defect;
 
 /// By the token of a sweep's sample_data: the file of its labels.
 pub(super) type LabelFiles = HashMap<Token, LabelFile>;

@@ -7,11 +7,8 @@
 mod cameras;
 mod captures;
 mod copies;
-mod files;
 mod keyframes;
 mod label_files;
-mod names;
-mod notes;
 mod npz;
 mod number;
 mod optics;

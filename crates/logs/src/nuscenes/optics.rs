@@ -10,10 +10,10 @@ use occlabel_core::camera::{
 use occlabel_core::{Camera, Fault};
 
 use super::captures::Capture;
-use super::files::{name_defect, read_file};
 use super::number::{Number, plain};
 use super::rows::{Affine, CalibratedSensor, OcamFields};
 use super::table::Row;
+use crate::files::{name_defect, read_file};
 
 /// The camera that took an image: model, size and body mask.
 ///

@@ -3,10 +3,10 @@
 use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use occlabel_core::{Fault, Pose};
 
-use super::notes::Notes;
 use super::number::{Number, plain};
 use super::rows::{CalibratedSensor, EgoPose, SampleAnnotation};
 use super::table::{Row, Table};
+use crate::notes::Notes;
 
 /// A quaternion's norm may be off by this much: rounding of 32-bit numbers and printed digits.
 const SILENT_NORM_ERROR: f64 = 1e-6;

@@ -7,11 +7,11 @@ use super::cameras::{SceneCamera, exposures, scene_cameras};
 use super::captures::Captures;
 use super::copies::without_copies;
 use super::keyframes::{KeySweeps, Moment, moments, reference_lidar};
-use super::notes::Notes;
 use super::raw_labels::RawLabels;
 use super::sweeps::{report_jumps, sweep_headers};
 use super::tables::SceneRows;
 use super::tracks::scene_tracks;
+use crate::notes::Notes;
 
 /// Everything of a scene but its points (labels.md section 2).
 pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, Fault> {

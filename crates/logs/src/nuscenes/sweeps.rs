@@ -6,8 +6,8 @@ use occlabel_core::{Fault, Loss, Pose, SweepHeader};
 
 use super::NuScenesLog;
 use super::captures::Capture;
-use super::notes::Notes;
 use super::token::Token;
+use crate::notes::Notes;
 
 /// Notes where a lidar's `next` goes back in time. The sweeps are sorted all the same.
 pub(super) fn report_jumps(sweeps: &[Capture<'_>], notes: &mut Notes) {

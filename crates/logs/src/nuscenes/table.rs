@@ -10,10 +10,10 @@ use occlabel_core::Fault;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::files::open_file;
 use super::number::without_bare_words;
 use super::records::{Record, Records};
 use super::token::Token;
+use crate::files::open_file;
 
 /// Tables are read in pieces of this size.
 const BUFFER_BYTES: usize = 1 << 18;

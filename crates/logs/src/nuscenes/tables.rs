@@ -5,15 +5,15 @@ use std::path::Path;
 
 use occlabel_core::Fault;
 
-use super::files::is_folder_name;
 use super::label_files::{LabelFiles, read_label_files};
-use super::names::{nearest_names, quoted};
 use super::rows::{
     CalibratedSensor, Category, EgoPose, Instance, Sample, SampleAnnotation, SampleData, SceneRow,
     Sensor,
 };
 use super::table::{Head, Row, Table, dangling, read_keyed, read_table, repeated};
 use super::token::Token;
+use crate::files::is_folder_name;
+use crate::names::{nearest_names, quoted};
 
 /// The rows that belong to one scene.
 #[derive(Debug)]

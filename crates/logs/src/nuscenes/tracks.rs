@@ -7,12 +7,12 @@ use occlabel_core::{Box3, BoxTrack, Fault, Loss, Timestamp, TrackId};
 
 use super::NuScenesLog;
 use super::keyframes::KeySweeps;
-use super::notes::Notes;
 use super::number::plain;
 use super::pose::QuaternionOrder;
 use super::rows::{Category, Instance, SampleAnnotation};
 use super::table::{Row, Table, repeated};
 use super::tables::SceneRows;
+use crate::notes::Notes;
 
 /// An instance's boxes, as they come.
 struct Boxes<'a> {

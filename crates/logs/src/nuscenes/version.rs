@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
 
-use super::files::{is_folder_name, unreadable};
-use super::names::quoted;
+use crate::files::{is_folder_name, unreadable};
+use crate::names::quoted;
 
 /// Version folders begin so.
 const PREFIX: &str = "v1.0-";

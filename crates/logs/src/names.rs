@@ -4,7 +4,7 @@
 const OFFERED: usize = 3;
 
 /// The names that take the fewest edits to become `name`, nearest first.
-pub(super) fn nearest_names<'a>(name: &str, known: &[&'a str]) -> Vec<&'a str> {
+pub(crate) fn nearest_names<'a>(name: &str, known: &[&'a str]) -> Vec<&'a str> {
     let mut ranked: Vec<(usize, &str)> =
         known.iter().map(|known| (edits(name, known), *known)).collect();
     ranked.sort_unstable();
@@ -12,7 +12,7 @@ pub(super) fn nearest_names<'a>(name: &str, known: &[&'a str]) -> Vec<&'a str> {
 }
 
 /// The names as one text.
-pub(super) fn quoted(names: &[&str]) -> String {
+pub(crate) fn quoted(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     quoted.join(", ")
 }

@@ -13,7 +13,7 @@ const MAX_FILE_BYTES: u64 = 1 << 30;
 ///
 /// # Errors
 /// If it is absent (`missing-file`), or cannot be opened.
-pub(super) fn open_file(path: &Path, place: &str) -> Result<File, Fault> {
+pub(crate) fn open_file(path: &Path, place: &str) -> Result<File, Fault> {
     let metadata = fs::metadata(path).map_err(|error| unreadable(place, &error))?;
     if !metadata.is_file() {
         return Err(Fault::new("unreadable-file", place, "a file", "something else"));
@@ -25,7 +25,7 @@ pub(super) fn open_file(path: &Path, place: &str) -> Result<File, Fault> {
 ///
 /// # Errors
 /// If it is absent (`missing-file`), longer, or cannot be read.
-pub(super) fn read_file(root: &Path, name: &str) -> Result<Vec<u8>, Fault> {
+pub(crate) fn read_file(root: &Path, name: &str) -> Result<Vec<u8>, Fault> {
     let file = open_file(&root.join(name), name)?;
     let mut bytes = Vec::new();
     let read = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
@@ -38,7 +38,7 @@ pub(super) fn read_file(root: &Path, name: &str) -> Result<Vec<u8>, Fault> {
 }
 
 /// What an error of the file system says about a file.
-pub(super) fn unreadable(place: &str, error: &io::Error) -> Fault {
+pub(crate) fn unreadable(place: &str, error: &io::Error) -> Fault {
     match error.kind() {
         io::ErrorKind::NotFound => Fault::new("missing-file", place, "a file", "none"),
         _ => Fault::new("unreadable-file", place, "a readable file", error.to_string()),
@@ -47,7 +47,7 @@ pub(super) fn unreadable(place: &str, error: &io::Error) -> Fault {
 
 /// What is wrong with a file's name in a table, if anything: it has to stay below the log's root on
 /// every system, and off the terminal.
-pub(super) fn name_defect(name: &str) -> Option<&'static str> {
+pub(crate) fn name_defect(name: &str) -> Option<&'static str> {
     let drive = name.as_bytes().get(1) == Some(&b':');
     if name.is_empty() {
         Some("no name")
@@ -64,7 +64,7 @@ pub(super) fn name_defect(name: &str) -> Option<&'static str> {
 
 /// Whether a name can be that of an output folder: of A-Z, a-z, 0-9, `.`, `_`, `-` only, and not
 /// hidden.
-pub(super) fn is_folder_name(name: &str) -> bool {
+pub(crate) fn is_folder_name(name: &str) -> bool {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"._-".contains(&byte);
     !name.is_empty() && !name.starts_with('.') && name.bytes().all(plain)
 }

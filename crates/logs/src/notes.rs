@@ -6,29 +6,29 @@ use occlabel_core::{Fault, Loss, Refusal};
 
 /// Warnings and refusals, as they come up.
 #[derive(Debug, Default)]
-pub(super) struct Notes {
+pub(crate) struct Notes {
     warnings: Vec<Fault>,
     refused: Vec<Refusal>,
 }
 
 impl Notes {
     /// Notes something odd that can be lived with.
-    pub(super) fn warn(&mut self, fault: Fault) {
+    pub(crate) fn warn(&mut self, fault: Fault) {
         self.warnings.push(fault);
     }
 
     /// Notes a record that is left out.
-    pub(super) fn refuse(&mut self, loss: Loss, fault: Fault) {
+    pub(crate) fn refuse(&mut self, loss: Loss, fault: Fault) {
         self.refused.push(Refusal { loss, fault });
     }
 
     /// The value, or a note that it is left out.
-    pub(super) fn accept<T>(&mut self, loss: Loss, result: Result<T, Fault>) -> Option<T> {
+    pub(crate) fn accept<T>(&mut self, loss: Loss, result: Result<T, Fault>) -> Option<T> {
         result.map_err(|fault| self.refuse(loss, fault)).ok()
     }
 
     /// Warnings, those of one rule and place folded into the first, and refusals.
-    pub(super) fn finish(self) -> (Vec<Fault>, Vec<Refusal>) {
+    pub(crate) fn finish(self) -> (Vec<Fault>, Vec<Refusal>) {
         (folded(self.warnings), self.refused)
     }
 }

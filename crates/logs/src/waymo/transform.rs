@@ -1,0 +1,99 @@
+//! Poses from the format's 4 x 4 matrices and roll, pitch and yaw.
+
+use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion};
+use occlabel_core::Pose;
+
+/// How far from a rotation a matrix may be, largest element of R R^T - 1: beyond it, it tells none.
+const LARGEST_ERROR: f64 = 1e-4;
+
+/// The pose of a rigid transform's 4 x 4 matrix, rows first, its rotation made exactly one.
+///
+/// # Errors
+/// What was found, if that is not 16 finite numbers, or no rigid transform: mirrored, skewed or
+/// scaled by more than 1e-4.
+pub(super) fn pose_from_matrix(numbers: &[f64]) -> Result<Pose, String> {
+    let Ok(numbers) = <&[f64; 16]>::try_from(numbers) else {
+        return Err(format!("{} numbers", numbers.len()));
+    };
+    if !numbers.iter().all(|number| number.is_finite()) {
+        return Err("a number that is not finite".into());
+    }
+    let matrix = Matrix4::from_row_slice(numbers);
+    if numbers[12..] != [0.0, 0.0, 0.0, 1.0] {
+        return Err(format!("a last row of {:?}", &numbers[12..]));
+    }
+    let rotation: Matrix3<f64> = matrix.fixed_view::<3, 3>(0, 0).into();
+    if rotation.determinant() <= 0.0 {
+        return Err(format!("a determinant of {}", rotation.determinant()));
+    }
+    let error = (rotation * rotation.transpose() - Matrix3::identity()).amax();
+    if error > LARGEST_ERROR {
+        return Err(format!("a matrix that is off a rotation by {error}"));
+    }
+    let offset = Translation3::new(numbers[3], numbers[7], numbers[11]);
+    Ok(Pose::from_parts(offset, nearest_rotation(rotation)))
+}
+
+/// What every transform has to be.
+pub(super) const A_POSE: &str = "16 numbers of a rigid transform";
+
+/// By square roots alone, which are the same on every machine.
+fn nearest_rotation(matrix: Matrix3<f64>) -> UnitQuaternion<f64> {
+    let near = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix));
+    UnitQuaternion::new_normalize(near.into_inner())
+}
+
+/// The pose of a vehicle by roll, pitch and yaw about x, y and z, and its place: it is turned by roll
+/// first, by yaw last.
+pub(super) fn pose_from_angles([roll, pitch, yaw, x, y, z]: [f64; 6]) -> Pose {
+    let about_z = Quaternion::new(libm::cos(yaw / 2.0), 0.0, 0.0, libm::sin(yaw / 2.0));
+    let about_y = Quaternion::new(libm::cos(pitch / 2.0), 0.0, libm::sin(pitch / 2.0), 0.0);
+    let about_x = Quaternion::new(libm::cos(roll / 2.0), libm::sin(roll / 2.0), 0.0, 0.0);
+    let rotation = UnitQuaternion::new_normalize(about_z * about_y * about_x);
+    Pose::from_parts(Translation3::new(x, y, z), rotation)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point3;
+
+    use super::*;
+
+    /// A quarter turn to the left, then 1 2 3 on.
+    const LEFT: [f64; 16] =
+        [0.0, -1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 1.0];
+
+    fn with(place: usize, number: f64) -> Result<Pose, String> {
+        let mut numbers = LEFT;
+        numbers[place] = number;
+        pose_from_matrix(&numbers)
+    }
+
+    #[test]
+    fn a_matrix_moves_points_by_its_rows() {
+        let moved = pose_from_matrix(&LEFT).unwrap() * Point3::new(1.0, 0.0, 0.5);
+        assert!((moved - Point3::new(1.0, 3.0, 3.5)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn fault_14_mirrored_skewed_and_broken_matrices_are_refused() {
+        assert_eq!(with(10, -1.0).unwrap_err(), "a determinant of -1");
+        assert!(
+            with(1, -1.001).unwrap_err().starts_with("a matrix that is off a rotation by 0.002")
+        );
+        assert_eq!(with(3, f64::NAN).unwrap_err(), "a number that is not finite");
+        assert_eq!(with(15, 2.0).unwrap_err(), "a last row of [0.0, 0.0, 0.0, 2.0]");
+        assert_eq!(pose_from_matrix(&LEFT[..12]).unwrap_err(), "12 numbers");
+        assert!(with(1, -1.00001).is_ok());
+    }
+
+    #[test]
+    fn roll_comes_first_and_yaw_last() {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let pose = pose_from_angles([quarter, 0.0, quarter, 5.0, 0.0, 0.0]);
+        // The vehicle's left rolls up; yaw leaves up where it is.
+        assert!((pose * Point3::new(0.0, 1.0, 0.0) - Point3::new(5.0, 0.0, 1.0)).norm() < 1e-12);
+        // Its front yaws to the left.
+        assert!((pose * Point3::new(1.0, 0.0, 0.0) - Point3::new(5.0, 1.0, 0.0)).norm() < 1e-12);
+    }
+}
