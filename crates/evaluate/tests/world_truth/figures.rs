@@ -176,10 +176,25 @@ fn flow_is_asked_of_movers_that_are_labelled_occupied() {
         (moving(WALL, off), surface(WALL)),
         (occupied(WALL), surface(WALL)),
     ]);
-    assert_eq!(all(&quality, "flow_error_mps"), (Some(5.5 / 3.0), 3));
-    assert_eq!(all(&quality, "flow_error_p95_mps"), (Some(5.0), 3));
+    assert_eq!(all(&quality, "flow_error_mps"), (Some(2.5), 2));
+    assert_eq!(all(&quality, "flow_error_p95_mps"), (Some(5.0), 2));
+    assert_eq!(all(&quality, "flow_error_all_mps"), (Some(5.5 / 3.0), 3));
     assert_eq!(all(&quality, "flow_missing"), (Some(0.25), 4));
     assert_eq!(all(&quality, "static_flow"), (Some(0.5), 2));
+}
+
+#[test]
+fn a5h_asks_for_the_class_that_rays_met_whatever_has_most_surface() {
+    let met = |class: u8| VoxelTruth { hit_class: Some(ClassId(class)), ..surface(ROAD) };
+    let unmet = VoxelTruth { hit_class: None, ..surface(ROAD) };
+    let quality = judge_row(&[
+        (occupied(WALL), met(WALL)),
+        (occupied(ROAD), met(WALL)),
+        (occupied(ROAD), met(ROAD)),
+        (occupied(ROAD), unmet),
+    ]);
+    assert_eq!(all(&quality, "class_hit"), (Some(2.0 / 3.0), 3));
+    assert_eq!(all(&quality, "class_accuracy"), (Some(0.75), 4));
 }
 
 #[test]

@@ -21,6 +21,10 @@ fn is_right(pair: &Pair) -> bool {
     is_occupied(pair) && pair.1.solid > 0.0
 }
 
+fn is_met(pair: &Pair) -> bool {
+    is_right(pair) && pair.1.hit_class.is_some()
+}
+
 fn is_moving(pair: &Pair) -> bool {
     is_right(pair) && pair.1.instance.is_some()
 }
@@ -33,7 +37,7 @@ fn is_visible((_, truth): &Pair) -> bool {
     truth.ends > 0 || truth.crossed
 }
 
-const DEFINITIONS: [Definition; 11] = [
+const DEFINITIONS: [Definition; 12] = [
     ("occupied_precision", is_occupied, |(_, t)| t.solid > 0.0),
     ("surface_recall", |(_, t)| t.solid > 0.0 && t.ends >= 5, is_occupied),
     ("surface_recall_dense", |(_, t)| t.solid > 0.0 && t.dense_ends >= 5, is_occupied),
@@ -41,6 +45,7 @@ const DEFINITIONS: [Definition; 11] = [
     ("free_purity_strict", is_free, |(_, t)| t.solid == 0.0),
     ("free_recall", |(_, t)| t.crossed && t.solid == 0.0, is_free),
     ("class_accuracy", is_right, |(l, t)| t.class.map(|class| class.0) == Some(l.semantics)),
+    ("class_hit", is_met, |(l, t)| t.hit_class == Some(ClassId(l.semantics))),
     ("class_present", is_right, |(l, t)| t.classes.contains(ClassId(l.semantics))),
     ("trail_rate", |(_, t)| t.swept, is_occupied),
     ("flow_missing", is_moving, |(l, _)| l.flow[0].is_nan()),

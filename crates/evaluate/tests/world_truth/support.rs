@@ -37,6 +37,7 @@ pub(crate) fn surface(class: u8) -> VoxelTruth {
         surface: true,
         clearance: Some(0.0),
         class: Some(ClassId(class)),
+        hit_class: Some(ClassId(class)),
         classes: [ClassId(class)].into_iter().collect(),
         ends: 5,
         ..VoxelTruth::default()
