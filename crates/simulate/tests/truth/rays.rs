@@ -1,8 +1,10 @@
 //! Where rays end, what they cross, and what they do not say about another time.
 
+use std::collections::BTreeSet;
+
 use nalgebra::UnitQuaternion;
-use occlabel_core::{GridSpec, Pose, VoxelGrid, VoxelTruth};
-use occlabel_simulate::{TrueRays, TruthAt, TruthSettings, dense_ends, keyframe_truth};
+use occlabel_core::{ClassId, GridSpec, PointLabel, Pose, VoxelGrid, VoxelTruth};
+use occlabel_simulate::{Drive, TrueRays, TruthAt, TruthSettings, dense_ends, keyframe_truth};
 
 use crate::support::*;
 
@@ -61,6 +63,42 @@ fn rays_on_what_changes_its_shape_count_for_a_moment_only() {
     assert_eq!(ends(100.0, 0.1), [1, 1, 7]);
     assert_eq!(ends(100.0, 0.05), [0, 1, 7]);
     assert_eq!(ends(0.2, 0.05), [0, 1, 2]);
+}
+
+/// The class of most returns in each voxel of a world in which nothing moves, the lowest on ties.
+fn most_met(drive: &Drive, spec: &GridSpec) -> Vec<Option<ClassId>> {
+    let mut counts = vec![[0_u32; 32]; spec.len()];
+    for (sweep, header) in drive.scene().sweeps.iter().enumerate() {
+        for found in drive.returns(sweep) {
+            let end = header.world_from_lidar() * found.position_m;
+            if let (Some(flat), PointLabel::Class(class)) =
+                (spec.flat_of(&end), drive.label_of(found.hit.what))
+            {
+                counts[flat][class.index()] += 1;
+            }
+        }
+    }
+    let best = |counts: &[u32; 32]| {
+        let most = *counts.iter().max().filter(|&&most| most > 0)?;
+        counts.iter().position(|&count| count == most).map(|class| ClassId(class as u8))
+    };
+    counts.iter().map(best).collect()
+}
+
+#[test]
+fn the_class_met_is_that_of_most_rays() {
+    let beams = "pattern.spinning = { beams.even = { count = 24, min_rad = -0.5, max_rad = 0.4 }, azimuths = 360 }";
+    let wall = solid("static.manmade", [4.1, 0.0, 0.0], "box.size_m = [2.0, 30.0, 8.0]");
+    let tree = solid("static.vegetation", [2.0, 0.5, 0.0], "box.size_m = [0.3, 0.3, 3.0]");
+    let text = (head(-0.1) + &lidar(1.0) + &wall + &tree)
+        .replace("pattern.spinning = { beams.elevations-rad = [0.0], azimuths = 4 }", beams);
+    let spec = beam_grid();
+    let (drive, truth) = (drive(&text), truth_of(&text, 0, &spec));
+    let met: Vec<_> = truth.values().iter().map(|voxel| voxel.hit_class).collect();
+    assert_eq!(met, most_met(&drive, &spec));
+    assert!(met.iter().flatten().count() > 40, "{}", met.iter().flatten().count());
+    let classes: BTreeSet<_> = met.iter().flatten().collect();
+    assert_eq!(classes.len(), 3, "{classes:?}");
 }
 
 #[test]
