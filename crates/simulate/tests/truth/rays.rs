@@ -90,7 +90,7 @@ fn the_class_met_is_that_of_most_rays() {
     let beams = "pattern.spinning = { beams.even = { count = 24, min_rad = -0.5, max_rad = 0.4 }, azimuths = 360 }";
     let wall = solid("static.manmade", [4.1, 0.0, 0.0], "box.size_m = [2.0, 30.0, 8.0]");
     let tree = solid("static.vegetation", [2.0, 0.5, 0.0], "box.size_m = [0.3, 0.3, 3.0]");
-    let text = (head(-0.1) + &lidar(1.0) + &wall + &tree)
+    let text = (head(0.05) + &lidar(1.0) + &wall + &tree)
         .replace("pattern.spinning = { beams.elevations-rad = [0.0], azimuths = 4 }", beams);
     let spec = beam_grid();
     let (drive, truth) = (drive(&text), truth_of(&text, 0, &spec));
