@@ -18,7 +18,7 @@ mask_lidar_iou = 0.99
 [at_most]
 occupied_distance_excess_voxels = 0.02
 trail_rate = 0.001
-flow_error_mps = 0.05
+flow_error_right_class_mps = 0.05
 ";
 
 /// A second on the hill: its log, and labels of it by two presets.

@@ -123,9 +123,9 @@ pub(crate) const FIGURES: &[Figure] = &[
     share!("A6", "mask_lidar_iou", "lidar, with exact visibility", MASKS, false, MaskLidar),
     share!("A6c", "mask_camera_iou", "cameras, the rule on exact voxels", MASKS, false, MaskCamera),
     share!("A6g", "mask_camera_sight_iou", "cameras, true lines of sight", MASKS, false, MaskCameraSight),
-    size!("FE", "flow_error_mps", "right class: end-point error, mean", MOTION, mean, FlowError),
+    size!("FE", "flow_error_mps", "end-point error: mean", MOTION, mean, FlowError),
     size!("FEp", "flow_error_p95_mps", "... 95th percentile", MOTION, percentile_95, FlowError),
-    size!("FEa", "flow_error_all_mps", "any class: end-point error, mean", MOTION, mean, FlowErrorAll),
+    size!("FEc", "flow_error_right_class_mps", "... mean where the class is right", MOTION, mean, FlowErrorRightClass),
     share!("FEn", "flow_missing", "truth has one, the label has not", MOTION, true, FlowMissing),
     share!("FEs", "static_flow", "stands still, labelled as moving", MOTION, true, StaticFlow),
 ];

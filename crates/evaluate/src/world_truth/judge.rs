@@ -221,9 +221,9 @@ fn motion(pair: &Pair, flow: [f32; 3], ring: &mut Ring) {
         ring.count(Question::FlowMissing, class, is_missing);
         if !is_missing {
             let error_mps = distance(flow, truth.flow);
-            ring.measure(Size::FlowErrorAll, class, error_mps);
+            ring.measure(Size::FlowError, class, error_mps);
             if pair.label == class {
-                ring.measure(Size::FlowError, class, error_mps);
+                ring.measure(Size::FlowErrorRightClass, class, error_mps);
             }
         }
     }

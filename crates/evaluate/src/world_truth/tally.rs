@@ -37,11 +37,11 @@ pub(crate) enum Size {
     OccupiedDistance,
     SurfaceDistance,
     FlowError,
-    FlowErrorAll,
+    FlowErrorRightClass,
 }
 
 const QUESTIONS: usize = Question::StaticFlow as usize + 1;
-const SIZES: usize = Size::FlowErrorAll as usize + 1;
+const SIZES: usize = Size::FlowErrorRightClass as usize + 1;
 
 /// The counts of one ring and class.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -176,9 +176,9 @@ fn flow_is_asked_of_movers_that_are_labelled_occupied() {
         (moving(WALL, off), surface(WALL)),
         (occupied(WALL), surface(WALL)),
     ]);
-    assert_eq!(all(&quality, "flow_error_mps"), (Some(2.5), 2));
-    assert_eq!(all(&quality, "flow_error_p95_mps"), (Some(5.0), 2));
-    assert_eq!(all(&quality, "flow_error_all_mps"), (Some(5.5 / 3.0), 3));
+    assert_eq!(all(&quality, "flow_error_mps"), (Some(5.5 / 3.0), 3));
+    assert_eq!(all(&quality, "flow_error_p95_mps"), (Some(5.0), 3));
+    assert_eq!(all(&quality, "flow_error_right_class_mps"), (Some(2.5), 2));
     assert_eq!(all(&quality, "flow_missing"), (Some(0.25), 4));
     assert_eq!(all(&quality, "static_flow"), (Some(0.5), 2));
 }

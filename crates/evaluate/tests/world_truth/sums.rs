@@ -96,7 +96,7 @@ fn rings_and_classes_hold_each_voxel_once() {
         let classes: u64 = quality.by_class.iter().map(|c| figure(&c.figures, name).1).sum();
         (rings, classes)
     };
-    for name in ["occupied_precision", "surface_recall", "class_hit", "flow_error_all_mps"] {
+    for name in ["occupied_precision", "surface_recall", "class_hit", "flow_error_mps"] {
         let (_, expected) = all(&quality, name);
         assert!(expected > 50, "{name} {expected}");
         assert_eq!(count(name), (expected, expected), "{name}");
