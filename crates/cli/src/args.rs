@@ -146,16 +146,17 @@ pub(crate) struct LabelArgs {
 #[command(mut_arg("input", |arg| arg.required(false)))]
 pub(crate) struct QualityArgs {
     /// Label trees to judge by --world-truth; those of one grid share the work.
-    #[arg(value_name = "DIR", requires = "world_truth")]
+    #[arg(value_name = "DIR", requires = "world_truth", conflicts_with = "held_out")]
     pub(crate) trees: Vec<PathBuf>,
     /// Judge by an exactly known world: a simulated log's folder, or a world file.
-    #[arg(long, value_name = "T", requires = "trees", conflicts_with = "held_out")]
+    #[arg(long, value_name = "T", requires = "trees")]
+    #[arg(conflicts_with_all = ["held_out", "LogArgs", "ConfigArgs", "range_noise_m"])]
     pub(crate) world_truth: Option<PathBuf>,
     /// Leave out the costly figures: denser rays (A2d) and cameras (A6c, A6g).
-    #[arg(long, requires = "world_truth")]
+    #[arg(long, requires = "world_truth", conflicts_with = "held_out")]
     pub(crate) quick: bool,
     /// Fail if a figure does not keep its limit: `precise`, or a TOML file.
-    #[arg(long, value_name = "FILE", requires = "world_truth")]
+    #[arg(long, value_name = "FILE", requires = "world_truth", conflicts_with = "held_out")]
     pub(crate) limits: Option<PathBuf>,
     /// Keep every N-th sweep of each lidar out of the fusion, and ask it afterwards.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..))]
@@ -326,6 +327,23 @@ mod tests {
     #[test]
     fn the_command_line_is_well_formed() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn quality_refuses_what_it_would_not_use() {
+        let parses = |more: &str| {
+            let line = format!("occlabel quality {more}");
+            Cli::try_parse_from(line.split(' ')).is_ok()
+        };
+        assert!(parses("tree --world-truth log --quick --json --jobs 2"));
+        assert!(parses("--held-out 5 --format nuscenes --input log --preset paper"));
+        for unused in ["--preset paper", "--set a.b=1", "--range-noise-m 0.5", "--input log"] {
+            assert!(!parses(&format!("tree --world-truth log {unused}")), "{unused}");
+        }
+        for unused in ["tree", "--quick", "--limits precise", "--world-truth log"] {
+            let held_out = format!("--held-out 5 --format nuscenes --input log {unused}");
+            assert!(!parses(&held_out), "{unused}");
+        }
     }
 
     #[test]
