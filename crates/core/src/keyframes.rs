@@ -27,13 +27,19 @@ pub enum KeyframeSource {
 impl KeyframeSettings {
     /// The reference lidar among the lidars of a log; `None` if the named one is not there.
     pub fn choose_lidar(&self, lidars: &[String]) -> Option<String> {
-        let named = |name: &str| lidars.iter().find(|lidar| *lidar == name);
         let chosen = match self.reference_lidar.as_str() {
-            "auto" => named("LIDAR_TOP").or_else(|| named("TOP")).or_else(|| lidars.iter().min()),
-            name => named(name),
+            "auto" => reference_lidar(lidars),
+            name => lidars.iter().find(|lidar| *lidar == name),
         };
         chosen.cloned()
     }
+}
+
+/// The lidar that keyframes refer to unless told: LIDAR_TOP or TOP, else the first by name
+/// (labels.md section 2).
+pub fn reference_lidar(lidars: &[String]) -> Option<&String> {
+    let named = |name: &str| lidars.iter().find(|lidar| *lidar == name);
+    named("LIDAR_TOP").or_else(|| named("TOP")).or_else(|| lidars.iter().min())
 }
 
 #[cfg(test)]

@@ -1,11 +1,8 @@
 //! Keyframes of logs that name none of their own (labels.md section 2).
 
 use occlabel_core::{
-    Exposure, Fault, Keyframe, KeyframeSettings, KeyframeSource, SweepHeader, Timestamp,
+    Exposure, Fault, Keyframe, KeyframeSettings, KeyframeSource, SweepHeader, nearest_exposure,
 };
-
-/// A keyframe has the exposures that are this near in time, seconds.
-const EXPOSURE_WITHIN_S: f64 = 0.1;
 
 /// The keyframes of a scene, their tokens the sweeps' times in nanoseconds.
 ///
@@ -25,11 +22,14 @@ pub(crate) fn keyframes(
     let all = settings.source == KeyframeSource::Sweeps || !sweeps.iter().any(&is_annotated);
     let is_chosen = |sweep: &SweepHeader| sweep.lidar == reference && (all || is_annotated(sweep));
     let chosen = sweeps.iter().enumerate().filter(|(_, sweep)| is_chosen(sweep));
+    let nearest = |time, camera: &Vec<Exposure>| {
+        nearest_exposure(camera, |exposure| exposure.time, time).cloned()
+    };
     let keyframe = |(place, sweep): (usize, &SweepHeader)| Keyframe {
         token: sweep.time.0.to_string(),
         time: sweep.time,
         sweep: place,
-        exposures: exposures.iter().filter_map(|camera| nearest(camera, sweep.time)).collect(),
+        exposures: exposures.iter().filter_map(|camera| nearest(sweep.time, camera)).collect(),
     };
     Ok(chosen.step_by(settings.stride.max(1)).map(keyframe).collect())
 }
@@ -47,11 +47,4 @@ fn reference_lidar(
         let found = if names.is_empty() { "no sweeps".into() } else { names.join(", ") };
         Fault::new("reference-lidar", scene, expected, found)
     })
-}
-
-/// The exposure nearest to a time, the earlier on ties, if it is near enough.
-fn nearest(exposures: &[Exposure], time: Timestamp) -> Option<Exposure> {
-    let apart = |exposure: &&Exposure| exposure.time.seconds_apart(time);
-    let nearest = exposures.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
-    (apart(&nearest) <= EXPOSURE_WITHIN_S).then(|| nearest.clone())
 }

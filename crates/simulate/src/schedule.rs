@@ -1,15 +1,12 @@
 //! When the sensors of a world work, and which sweeps are keyframes.
 
-use occlabel_core::{Exposure, Fault, Timestamp};
+use occlabel_core::{Exposure, Fault, Timestamp, nearest_exposure, reference_lidar};
 
 use crate::World;
 use crate::annotator::LoggedPoses;
 use crate::check::need;
 use crate::lidar::Lidar;
 use crate::noise::{Chance, Kind};
-
-/// A keyframe has the exposures that are this near in time (labels.md section 2), seconds.
-const EXPOSURE_WITHIN_S: f64 = 0.1;
 
 /// Which lidar took a sweep, and the how many-th of its sweeps it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,7 +33,8 @@ pub(crate) fn sweep_keys(world: &World) -> Vec<SweepKey> {
 /// # Errors
 /// If `keyframe_hz` is no whole part of the reference lidar's rate.
 pub(crate) fn keyframe_keys(world: &World, sweeps: &[SweepKey]) -> Result<Vec<SweepKey>, Fault> {
-    let reference = reference_lidar(world);
+    let names: Vec<String> = world.lidars.iter().map(|lidar| lidar.name.clone()).collect();
+    let reference = reference_lidar(&names).map_or(0, |name| world.lidar_number(name));
     let rate_hz = world.lidars[reference].clock.rate_hz();
     let stride = (rate_hz / world.keyframe_hz).round();
     let whole = stride >= 1.0 && (stride * world.keyframe_hz / rate_hz - 1.0).abs() < 1e-6;
@@ -54,12 +52,6 @@ pub(crate) fn keyframe_keys(world: &World, sweeps: &[SweepKey]) -> Result<Vec<Sw
 fn is_logged(world: &World, key: &SweepKey) -> bool {
     let chance = Chance::of(world.seed, Kind::Keyframe, key.number, 0);
     key.number == 0 || chance.uniform(0) >= world.annotator.missing_keyframes
-}
-
-/// The lidar that keyframes refer to (labels.md section 2).
-fn reference_lidar(world: &World) -> usize {
-    let named = |name: &str| world.lidars.iter().position(|lidar| lidar.name == name);
-    named("LIDAR_TOP").or_else(|| named("TOP")).unwrap_or(0)
 }
 
 /// When each camera is exposed.
@@ -84,11 +76,6 @@ pub(crate) fn nearest_exposures(
     time: Timestamp,
 ) -> impl Iterator<Item = (usize, Timestamp)> {
     times.iter().enumerate().filter_map(move |(camera, times)| {
-        let next = times.partition_point(|known| *known < time);
-        let around = &times[next.saturating_sub(1)..times.len().min(next + 1)];
-        let nearest = *around
-            .iter()
-            .min_by(|a, b| a.seconds_apart(time).total_cmp(&b.seconds_apart(time)))?;
-        (nearest.seconds_apart(time) <= EXPOSURE_WITHIN_S).then_some((camera, nearest))
+        nearest_exposure(times, |known| *known, time).map(|nearest| (camera, *nearest))
     })
 }

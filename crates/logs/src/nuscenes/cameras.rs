@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use occlabel_core::{Exposure, Fault, Loss, NamedCamera, Pose, Timestamp};
+use occlabel_core::{
+    EXPOSURE_WITHIN_S, Exposure, Fault, Loss, NamedCamera, Pose, nearest_exposure,
+};
 
 use super::NuScenesLog;
 use super::captures::Capture;
@@ -12,10 +14,6 @@ use crate::notes::Notes;
 
 /// `camera_bits` has one bit for each camera.
 const MAX_CAMERAS: usize = 16;
-
-/// An image that the format does not name for a keyframe serves it up to this far in time
-/// (labels.md section 2).
-const MAX_EXPOSURE_GAP_S: f64 = 0.1;
 
 /// A camera with all its images.
 #[derive(Debug)]
@@ -87,21 +85,12 @@ impl<'a> SceneCamera<'a> {
             image.row.is_key_frame && Some(&image.row.sample_token) == moment.sample
         };
         let named = self.images.iter().find(is_named);
-        named.or_else(|| nearest(&self.images, moment.time))
+        named.or_else(|| nearest_exposure(&self.images, |image| image.time, moment.time))
     }
 }
 
-/// The image nearest in time within 0.1 s, the earlier on ties.
-fn nearest<'a, 'b>(images: &'b [Capture<'a>], time: Timestamp) -> Option<&'b Capture<'a>> {
-    let gap = |image: &&Capture<'_>| image.time.0.abs_diff(time.0);
-    let later = images.partition_point(|image| image.time < time);
-    let before = images[..later].last().map(|last| images.partition_point(|i| i.time < last.time));
-    let candidates = before.into_iter().chain([later]).filter_map(|place| images.get(place));
-    candidates.min_by_key(gap).filter(|image| image.time.seconds_apart(time) <= MAX_EXPOSURE_GAP_S)
-}
-
 fn absent(camera: &SceneCamera<'_>, moment: &Moment<'_>) -> Fault {
-    let expected = format!("an image within {MAX_EXPOSURE_GAP_S} s of the keyframe");
+    let expected = format!("an image within {EXPOSURE_WITHIN_S} s of the keyframe");
     Fault::new("camera-absent", &camera.named.name, expected, "none").record(&moment.token)
 }
 

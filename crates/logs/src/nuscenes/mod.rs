@@ -29,7 +29,7 @@ mod version;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, SweepHeader};
+use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 
 use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
@@ -135,11 +135,6 @@ fn defaults(folder: &Path) -> Result<ReaderDefaults, Fault> {
     let lidars = sensors.values().filter(|sensor| sensor.modality == "lidar");
     let names: Vec<String> = lidars.map(|lidar| lidar.channel.clone()).collect();
     let none = || Fault::new("reference-lidar", "sensor.json", "a lidar", "none");
-    let auto = KeyframeSettings {
-        source: KeyframeSource::Annotated,
-        stride: 1,
-        reference_lidar: "auto".into(),
-    };
-    let reference_lidar = auto.choose_lidar(&names).ok_or_else(none)?;
+    let reference_lidar = reference_lidar(&names).cloned().ok_or_else(none)?;
     Ok(ReaderDefaults { ego_box_m: Some(EGO_BOX_M), taxonomy: "occ3d-nuscenes", reference_lidar })
 }
