@@ -119,7 +119,6 @@ fn eyes<'a>(drive: &'a Drive, at: &TruthAt) -> Vec<Eye<'a>> {
 }
 
 fn scale(drive: &Drive, rules: &Rules) -> Scale {
-    let noises = drive.world().lidars.iter().map(|lidar| lidar.range_noise_m);
-    let noise_sigma_m = noises.fold(0.0, f64::max);
+    let noise_sigma_m = drive.world().range_noise_m();
     Scale { noise_sigma_m, ..Scale::new(rules.spec.clone(), &rules.taxonomy) }
 }

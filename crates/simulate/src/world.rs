@@ -91,6 +91,11 @@ impl World {
         }
     }
 
+    /// Deviation of the noisiest lidar's ranges, metres.
+    pub fn range_noise_m(&self) -> f64 {
+        self.lidars.iter().map(|lidar| lidar.range_noise_m).fold(0.0, f64::max)
+    }
+
     /// A lidar's place in the list; how many there are if it is none of them.
     pub(crate) fn lidar_number(&self, name: &str) -> usize {
         self.lidars.partition_point(|lidar| lidar.name.as_str() < name)

@@ -116,9 +116,8 @@ impl Bench<'_> {
             return Ok(Tally::default());
         };
         let arrays = tree.read(known.scene, token)?;
-        let noises = self.drive.world().lidars.iter().map(|lidar| lidar.range_noise_m);
         let scale = Scale {
-            noise_sigma_m: noises.fold(0.0, f64::max),
+            noise_sigma_m: self.drive.world().range_noise_m(),
             ..Scale::new(tree.spec().clone(), &tree.rules.taxonomy)
         };
         judge(&arrays.judged(), known, &scale).map_err(|fault| fault.record(token))
