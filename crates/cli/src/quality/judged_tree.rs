@@ -67,8 +67,10 @@ impl JudgedTree {
         match record.keyframes.iter().find(|token| drive.keyframe(token).is_none()) {
             None => Ok(()),
             Some(token) => {
-                let expected = format!("a keyframe of the world `{scene}`, its token ending in ns");
-                Err(Fault::new("world-truth", &self.name, expected, format!("`{token}`")))
+                let expected =
+                    format!("keyframes of the world `{scene}`, as its keyframe_hz has them");
+                let fault = Fault::new("world-truth", &self.name, expected, format!("`{token}`"));
+                Err(fault.hint("label with keyframes.source = \"annotated\""))
             }
         }
     }
