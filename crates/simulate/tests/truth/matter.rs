@@ -188,9 +188,10 @@ fn solid_shares_are_what_monte_carlo_finds() {
                 spec.min_m() + Vector3::from_fn(|axis, _| (index[axis] as f64 + u[axis]) * 0.4)
             };
             let is_solid = |p: Point3<f64>| instant.contains(&(world_from_grid * p)).is_some();
-            let share = (0..512).filter(|&k| is_solid(sample(k))).count() as f64 / 512.0;
+            // With 512 samples the sequence itself was once off by 0.043 at a plane.
+            let share = (0..4096).filter(|&k| is_solid(sample(k))).count() as f64 / 4096.0;
             let off = (f64::from(voxel.solid) - share).abs();
-            prop_assert!(off < 0.04, "{} and {share} in {index:?}", voxel.solid);
+            prop_assert!(off < 0.03, "{} and {share} in {index:?}", voxel.solid);
             prop_assert!(share == 0.0 || voxel.solid > 0.0, "{share} in {index:?}");
             prop_assert!(share == 1.0 || share == 0.0 || voxel.surface, "{share} in {index:?}");
             cut.set(cut.get() + usize::from(share > 0.0 && share < 1.0));
