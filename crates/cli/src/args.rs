@@ -228,6 +228,8 @@ pub(crate) enum Format {
     Nuscenes,
     /// Waymo Open Dataset: TFRecord files (v1), or Parquet components (v2).
     Waymo,
+    /// Scans, labels, poses and times of sequences; no boxes.
+    Semantickitti,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

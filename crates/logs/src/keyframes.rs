@@ -7,7 +7,8 @@ use occlabel_core::{
 /// A keyframe has the exposures that are this near in time, seconds.
 const EXPOSURE_WITHIN_S: f64 = 0.1;
 
-/// The keyframes of a scene, their tokens the sweeps' times in nanoseconds.
+/// The keyframes of a scene, their tokens the sweeps' times in nanoseconds. Of sweeps of one time
+/// the first is taken.
 ///
 /// `is_annotated` tells the sweeps that the format annotates; where there is none, all are taken.
 /// `exposures` holds, for each camera, its exposures in order of time.
@@ -24,14 +25,17 @@ pub(crate) fn keyframes(
     let reference = reference_lidar(settings, scene, sweeps)?;
     let all = settings.source == KeyframeSource::Sweeps || !sweeps.iter().any(&is_annotated);
     let is_chosen = |sweep: &SweepHeader| sweep.lidar == reference && (all || is_annotated(sweep));
-    let chosen = sweeps.iter().enumerate().filter(|(_, sweep)| is_chosen(sweep));
+    let mut chosen: Vec<_> =
+        sweeps.iter().enumerate().filter(|(_, sweep)| is_chosen(sweep)).collect();
+    // Sweeps are ordered by time; one token names one folder.
+    chosen.dedup_by_key(|(_, sweep)| sweep.time);
     let keyframe = |(place, sweep): (usize, &SweepHeader)| Keyframe {
         token: sweep.time.0.to_string(),
         time: sweep.time,
         sweep: place,
         exposures: exposures.iter().filter_map(|camera| nearest(camera, sweep.time)).collect(),
     };
-    Ok(chosen.step_by(settings.stride.max(1)).map(keyframe).collect())
+    Ok(chosen.into_iter().step_by(settings.stride.max(1)).map(keyframe).collect())
 }
 
 fn reference_lidar(
