@@ -230,6 +230,8 @@ pub(crate) enum Format {
     Waymo,
     /// Scans, labels, poses and times of sequences; no boxes.
     Semantickitti,
+    /// Argoverse 2 sensor logs.
+    Av2,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

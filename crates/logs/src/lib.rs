@@ -19,6 +19,7 @@
 //! [`Scene`]: occlabel_core::Scene
 //! [`Fault`]: occlabel_core::Fault
 
+mod argoverse2;
 mod files;
 mod inventory;
 mod keyframes;
@@ -33,6 +34,7 @@ mod source;
 mod transform;
 mod waymo;
 
+pub use argoverse2::Argoverse2Log;
 pub use inventory::{Inventory, MissingFile};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
 pub use options::ReadOptions;
