@@ -14,7 +14,9 @@ pub const PRESETS: &[(&str, &str)] = shipped!(
 );
 
 /// Taxonomies by name.
-pub const TAXONOMIES: &[(&str, &str)] = shipped!("taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc" "semantickitti" "argoverse2");
+pub const TAXONOMIES: &[(&str, &str)] = shipped!(
+    "taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc" "semantickitti" "argoverse2"
+);
 
 /// The text of a preset.
 pub fn preset(name: &str) -> Option<&'static str> {
