@@ -229,6 +229,10 @@ pub(crate) enum Format {
     Nuscenes,
     /// Waymo Open Dataset: TFRecord files (v1), or Parquet components (v2).
     Waymo,
+    /// Scans, labels, poses and times of sequences; no boxes.
+    Semantickitti,
+    /// Argoverse 2 sensor logs.
+    Av2,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

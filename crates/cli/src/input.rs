@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use occlabel_core::{ClassId, Fault, Taxonomy};
 use occlabel_logs::{
-    NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults,
-    SceneSource, WaymoLog,
+    Argoverse2Log, NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions,
+    ReaderDefaults, SceneSource, SemanticKittiLog, WaymoLog,
 };
 use occlabel_pipeline::{Autos, Config, Rules, parse_taxonomy, preset, shipped_taxonomy};
 
@@ -54,6 +54,10 @@ fn open_format(log: &LogArgs, read: ReadOptions) -> Result<Box<dyn SceneSource>,
             NuScenesLog::open(&log.input, options).map(|log| Box::new(log) as _)
         }
         Format::Waymo => WaymoLog::open(&log.input, read).map(|log| Box::new(log) as _),
+        Format::Av2 => Argoverse2Log::open(&log.input, read).map(|log| Box::new(log) as _),
+        Format::Semantickitti => {
+            SemanticKittiLog::open(&log.input, read).map(|log| Box::new(log) as _)
+        }
     }
 }
 
@@ -62,6 +66,8 @@ fn format_defaults(log: &LogArgs) -> Result<ReaderDefaults, Fault> {
     match log.format {
         Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref()),
         Format::Waymo => WaymoLog::format_defaults(&log.input),
+        Format::Av2 => Ok(Argoverse2Log::format_defaults()),
+        Format::Semantickitti => Ok(SemanticKittiLog::format_defaults()),
     }
 }
 
@@ -84,9 +90,14 @@ fn nuscenes_options(log: &LogArgs, read: ReadOptions) -> NuScenesOptions {
 /// What the user named wrongly is a matter of usage; what the log holds wrongly is not.
 fn usage_or_failed(fault: Fault) -> Stop {
     match fault.rule {
-        "scene-unknown" | "version-folder" | "reference-lidar" | "waymo-layout" | "waymo-v2" => {
-            Stop::usage(fault)
-        }
+        "scene-unknown"
+        | "version-folder"
+        | "reference-lidar"
+        | "waymo-layout"
+        | "waymo-v2"
+        | "av2"
+        | "av2-layout"
+        | "semantickitti-layout" => Stop::usage(fault),
         _ => fault.into(),
     }
 }

@@ -4,7 +4,8 @@ use occlabel_core::{
     Exposure, Fault, Keyframe, KeyframeSettings, KeyframeSource, SweepHeader, nearest_exposure,
 };
 
-/// The keyframes of a scene, their tokens the sweeps' times in nanoseconds.
+/// The keyframes of a scene, their tokens the sweeps' times in nanoseconds. Of sweeps of one time
+/// the first is taken.
 ///
 /// `is_annotated` tells the sweeps that the format annotates; where there is none, all are taken.
 /// `exposures` holds, for each camera, its exposures in order of time.
@@ -21,7 +22,10 @@ pub(crate) fn keyframes(
     let reference = reference_lidar(settings, scene, sweeps)?;
     let all = settings.source == KeyframeSource::Sweeps || !sweeps.iter().any(&is_annotated);
     let is_chosen = |sweep: &SweepHeader| sweep.lidar == reference && (all || is_annotated(sweep));
-    let chosen = sweeps.iter().enumerate().filter(|(_, sweep)| is_chosen(sweep));
+    let mut chosen: Vec<_> =
+        sweeps.iter().enumerate().filter(|(_, sweep)| is_chosen(sweep)).collect();
+    // Sweeps are ordered by time; one token names one folder.
+    chosen.dedup_by_key(|(_, sweep)| sweep.time);
     let nearest = |time, camera: &Vec<Exposure>| {
         nearest_exposure(camera, |exposure| exposure.time, time).cloned()
     };
@@ -31,7 +35,7 @@ pub(crate) fn keyframes(
         sweep: place,
         exposures: exposures.iter().filter_map(|camera| nearest(sweep.time, camera)).collect(),
     };
-    Ok(chosen.step_by(settings.stride.max(1)).map(keyframe).collect())
+    Ok(chosen.into_iter().step_by(settings.stride.max(1)).map(keyframe).collect())
 }
 
 fn reference_lidar(

@@ -19,18 +19,26 @@
 //! [`Scene`]: occlabel_core::Scene
 //! [`Fault`]: occlabel_core::Fault
 
+mod argoverse2;
 mod files;
 mod inventory;
 mod keyframes;
 mod names;
 mod notes;
+mod number_rows;
 mod nuscenes;
 mod options;
+mod points;
+mod semantickitti;
 mod source;
+mod transform;
 mod waymo;
 
+pub use argoverse2::Argoverse2Log;
 pub use inventory::{Inventory, MissingFile};
-pub use nuscenes::{NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder};
+pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
 pub use options::ReadOptions;
+pub use points::PointColumns;
+pub use semantickitti::SemanticKittiLog;
 pub use source::{ReaderDefaults, SceneSource, SweepPoints};
 pub use waymo::WaymoLog;

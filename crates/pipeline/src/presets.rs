@@ -14,8 +14,9 @@ pub const PRESETS: &[(&str, &str)] = shipped!(
 );
 
 /// Taxonomies by name.
-pub const TAXONOMIES: &[(&str, &str)] =
-    shipped!("taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc");
+pub const TAXONOMIES: &[(&str, &str)] = shipped!(
+    "taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc" "semantickitti" "argoverse2"
+);
 
 /// The text of a preset.
 pub fn preset(name: &str) -> Option<&'static str> {
@@ -88,5 +89,13 @@ mod tests {
         assert_eq!(sets, [riders.clone(), riders, vec![11, 12, 17, 18], vec![0, 1, 9]]);
         assert_eq!(priority, [11, 12, 18, 17, 13, 14, 15, 16, 6, 7, 5, 4, 3, 2, 8, 9, 1, 0, 10]);
         assert_eq!((unknown, free), (None, 255));
+
+        let (sets, priority, unknown, free) = lists("semantickitti");
+        let riders = vec![2, 3, 6, 7, 8];
+        assert_eq!(sets[0], [1, 2, 3, 4, 5, 6, 7, 8, 19]);
+        assert_eq!(sets[1..], [(1..=8).collect(), riders, vec![9, 10, 11, 12, 17]]);
+        let first = [6, 7, 8, 2, 3, 19, 18, 1, 4, 5, 16, 14, 13, 15, 9, 10, 11, 12, 17, 0];
+        assert_eq!(priority, first);
+        assert_eq!((unknown, free), (Some(0), 20));
     }
 }

@@ -64,8 +64,8 @@ fn poses_move_every_sweep_into_the_first_ones_frame() {
         assert!((first_from_now - true_one.to_homogeneous()).amax() < 1e-9, "{pose}");
         assert_eq!((time.parse::<f64>().unwrap() * 1e9).round() as i64, sweep.time.0);
     }
-    // A lidar 1.84 m above the ego's origin is that much above the camera: y points down.
-    assert!((tr[(1, 3)] + 1.84).abs() < 1e-12 && (tr[(2, 3)] - 0.9).abs() < 1e-12, "{tr}");
+    // A lidar 1.84 m above the ego's origin is 0.19 m above the camera: y points down.
+    assert!((tr[(1, 3)] + 0.19).abs() < 1e-12 && (tr[(2, 3)] - 0.9).abs() < 1e-12, "{tr}");
 }
 
 #[test]

@@ -12,7 +12,6 @@ mod label_files;
 mod npz;
 mod number;
 mod optics;
-mod points;
 mod pose;
 mod raw_labels;
 mod records;
@@ -31,9 +30,8 @@ use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 
-use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
+use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
-pub use points::PointColumns;
 pub use pose::QuaternionOrder;
 
 use label_files::LabelFile;

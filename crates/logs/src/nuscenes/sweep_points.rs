@@ -7,11 +7,11 @@ use occlabel_core::{Fault, LIDAR_ORIGIN, Meaning, PointCloud, PointLabel, SweepH
 use super::NuScenesLog;
 use super::label_files::{LabelEncoding, LabelFile};
 use super::npz::{NpzDefect, read_data};
-use super::points::decode_points;
 use super::raw_labels::RawLabels;
 use super::token::Token;
 use crate::SweepPoints;
 use crate::files::{open_file, read_file};
+use crate::points::decode_points;
 
 /// A panoptic label is this many times the raw label, plus an instance's number.
 const PANOPTIC_STEP: u16 = 1000;

@@ -7,8 +7,8 @@ use occlabel_core::camera::{
 use occlabel_core::{Camera, Exposure, Fault, Keyframe, Loss, NamedCamera, Pose, Timestamp};
 
 use super::segment::{CameraCalibration, Frame, Image};
-use super::transform::{A_POSE, pose_from_matrix};
 use crate::notes::Notes;
+use crate::transform::{A_POSE, pose_from_matrix};
 
 /// A camera of the segment that can be used.
 pub(super) struct SceneCamera {

@@ -16,7 +16,7 @@ use super::segment::{
     BoxLabel, CameraCalibration, Frame, Image, Inclinations, Lidar, LidarCalibration, Place,
     Segment, camera_name,
 };
-use super::transform::{A_POSE, pose_from_matrix};
+use crate::transform::{A_POSE, pose_from_matrix};
 
 const LIDAR: &str = "lidar";
 const LIDAR_CALIBRATION: &str = "lidar_calibration";

@@ -18,7 +18,7 @@ use nalgebra::Point3;
 use occlabel_core::{LIDAR_ORIGIN, PointCloud, PointLabel, Pose, RigidMap, SweepHeader};
 
 use super::matrix::Matrix;
-use super::transform::pose_from_angles;
+use crate::transform::pose_from_angles;
 
 /// Values of a pixel.
 pub(super) const PIXEL: usize = 4;

@@ -8,13 +8,13 @@
 //!   sequences/00/times.txt               seconds of the drive
 //! ```
 //!
-//! The camera is a nominal one: at the ego's origin, looking ahead. So `inverse(Tr) P Tr` moves
-//! points of a sweep into the first sweep's lidar frame, as everywhere in KITTI, and Tr alone tells
-//! how the lidar is mounted.
+//! The camera is a nominal one: above the ego's origin, as high as KITTI's own, looking ahead. So
+//! `inverse(Tr) P Tr` moves points of a sweep into the first sweep's lidar frame, as everywhere in
+//! KITTI, and Tr alone tells how the lidar is mounted.
 
 mod ids;
 
-use nalgebra::Matrix4;
+use nalgebra::{Matrix4, Translation3};
 use occlabel_core::{Fault, Pose, SweepHeader, Timestamp};
 
 use crate::Drive;
@@ -26,6 +26,8 @@ use super::written::Written;
 
 /// The entry that makes the log one.
 const SEQUENCES: &str = "sequences";
+/// How high KITTI's camera 0 stands above the road, metres (KITTI's drawing of the sensors' setup).
+const CAMERA_HEIGHT_M: f64 = 1.65;
 /// The remission of every return: materials have none here.
 const REMISSION: f32 = 0.5;
 /// What never leaves its first place by more is parked, metres.
@@ -107,7 +109,8 @@ fn label_bytes(points: &[LoggedPoint], drive: &Drive, moving: &[bool]) -> Vec<u8
 }
 
 fn write_texts(sweeps: &[&SweepHeader], output: &Output) -> Result<(), Fault> {
-    let camera_from_ego = body_from_optical().inverse();
+    let ego_from_camera = Translation3::new(0.0, 0.0, CAMERA_HEIGHT_M) * body_from_optical();
+    let camera_from_ego = ego_from_camera.inverse();
     let Some(first) = sweeps.first() else { return Ok(()) };
     let mut calib = String::new();
     for camera in 0..4 {

@@ -1,4 +1,4 @@
-//! Poses from the format's 4 x 4 matrices and roll, pitch and yaw.
+//! Poses from matrices, and from roll, pitch and yaw.
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion};
 use occlabel_core::Pose;
@@ -11,7 +11,7 @@ const LARGEST_ERROR: f64 = 1e-4;
 /// # Errors
 /// What was found, if that is not 16 finite numbers, or no rigid transform: mirrored, skewed or
 /// scaled by more than 1e-4.
-pub(super) fn pose_from_matrix(numbers: &[f64]) -> Result<Pose, String> {
+pub(crate) fn pose_from_matrix(numbers: &[f64]) -> Result<Pose, String> {
     let Ok(numbers) = <&[f64; 16]>::try_from(numbers) else {
         return Err(format!("{} numbers", numbers.len()));
     };
@@ -34,8 +34,20 @@ pub(super) fn pose_from_matrix(numbers: &[f64]) -> Result<Pose, String> {
     Ok(Pose::from_parts(offset, nearest_rotation(rotation)))
 }
 
-/// What every transform has to be.
-pub(super) const A_POSE: &str = "16 numbers of a rigid transform";
+/// The pose of the first three rows of a rigid transform's matrix, its rotation made exactly one.
+///
+/// # Errors
+/// What was found, if a number is not finite, or the matrix is mirrored, skewed or scaled by more
+/// than 1e-4.
+pub(crate) fn pose_from_rows(numbers: &[f64; 12]) -> Result<Pose, String> {
+    let mut whole = [0.0; 16];
+    whole[..12].copy_from_slice(numbers);
+    whole[15] = 1.0;
+    pose_from_matrix(&whole)
+}
+
+/// What every 4 x 4 transform has to be.
+pub(crate) const A_POSE: &str = "16 numbers of a rigid transform";
 
 /// By square roots alone, which are the same on every machine.
 fn nearest_rotation(matrix: Matrix3<f64>) -> UnitQuaternion<f64> {
@@ -45,7 +57,7 @@ fn nearest_rotation(matrix: Matrix3<f64>) -> UnitQuaternion<f64> {
 
 /// The pose of a vehicle by roll, pitch and yaw about x, y and z, and its place: it is turned by roll
 /// first, by yaw last.
-pub(super) fn pose_from_angles([roll, pitch, yaw, x, y, z]: [f64; 6]) -> Pose {
+pub(crate) fn pose_from_angles([roll, pitch, yaw, x, y, z]: [f64; 6]) -> Pose {
     let about_z = Quaternion::new(libm::cos(yaw / 2.0), 0.0, 0.0, libm::sin(yaw / 2.0));
     let about_y = Quaternion::new(libm::cos(pitch / 2.0), 0.0, libm::sin(pitch / 2.0), 0.0);
     let about_x = Quaternion::new(libm::cos(roll / 2.0), libm::sin(roll / 2.0), 0.0, 0.0);

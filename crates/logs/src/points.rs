@@ -35,7 +35,7 @@ impl PointColumns {
 ///
 /// # Errors
 /// If the bytes are no whole number of points, or look like four columns.
-pub(super) fn decode_points(
+pub(crate) fn decode_points(
     bytes: &[u8],
     file: &str,
     columns: Option<PointColumns>,

@@ -1,0 +1,119 @@
+//! A scene from its log: the reader's conductor.
+
+use std::collections::{BTreeSet, HashMap};
+use std::fs;
+use std::path::Path;
+
+use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader, Timestamp};
+
+use super::LIDAR;
+use super::lidars::Lidars;
+use super::poses::poses;
+use super::table::Table;
+use super::tracks::read_tracks;
+use crate::ReadOptions;
+use crate::files::{is_folder_name, unreadable};
+use crate::keyframes::keyframes;
+use crate::notes::Notes;
+
+/// The ego poses of a log.
+const POSES: &str = "city_SE3_egovehicle.feather";
+/// The boxes of a log; absent from logs of the test split.
+const BOXES: &str = "annotations.feather";
+/// The sensors' mountings.
+pub(super) const MOUNTINGS: &str = "calibration/egovehicle_SE3_sensor.feather";
+/// The sweeps.
+const SWEEPS: &str = "sensors/lidar/";
+
+/// The files of a log that are no sweep's.
+pub(super) const TABLES: [&str; 3] = [POSES, BOXES, MOUNTINGS];
+
+/// Whether a folder is a log.
+pub(super) fn is_log(folder: &Path) -> bool {
+    folder.join(POSES).is_file()
+}
+
+/// Everything of a scene but its points (labels.md section 2). `folder` ends with a `/`, or is empty.
+///
+/// # Errors
+/// If the name cannot be that of a folder, or a table cannot be used.
+pub(super) fn build_scene(
+    root: &Path,
+    options: &ReadOptions,
+    name: &str,
+    folder: &str,
+) -> Result<Scene, Fault> {
+    if !is_folder_name(name) {
+        let expected = "a log's name of A-Z, a-z, 0-9, `.`, `_` and `-`";
+        return Err(Fault::new("scene-name", name, expected, format!("`{name}`")));
+    }
+    let mut notes = Notes::default();
+    let lidars = Lidars::read(root, &format!("{folder}{MOUNTINGS}"))?;
+    let ego_poses = ego_poses(root, &format!("{folder}{POSES}"), &mut notes)?;
+    let boxes = format!("{folder}{BOXES}");
+    let (tracks, annotated) = match root.join(&boxes).is_file() {
+        true => read_tracks(root, &boxes, options, &ego_poses, &mut notes)?,
+        false => Default::default(),
+    };
+    let mut sweeps = Vec::new();
+    for time_ns in sweep_times(root, folder)? {
+        let header = sweep_header(name, folder, time_ns, &lidars, &ego_poses);
+        sweeps.extend(notes.accept(Loss::Keyframe, header));
+    }
+    let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
+    let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &[])?;
+    let (warnings, refused) = notes.finish();
+    let (name, cameras) = (name.to_owned(), Vec::new());
+    Ok(Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused })
+}
+
+/// Poses by time; one that is none is left out and noted.
+fn ego_poses(root: &Path, file: &str, notes: &mut Notes) -> Result<HashMap<i64, Pose>, Fault> {
+    let table = Table::read(root, file)?;
+    let rows = table.integers("timestamp_ns")?.into_iter().zip(poses(&table)?);
+    let mut by_time = HashMap::new();
+    for (time_ns, pose) in rows {
+        match pose {
+            Ok(pose) => drop(by_time.insert(time_ns, pose)),
+            Err(found) => {
+                let fault = Fault::new("ego-pose", file, "a pose", found);
+                notes.warn(fault.record(time_ns.to_string()));
+            }
+        }
+    }
+    Ok(by_time)
+}
+
+/// The times of the sweeps that are there, nanoseconds: their files are named so.
+fn sweep_times(root: &Path, folder: &str) -> Result<BTreeSet<i64>, Fault> {
+    let place = format!("{folder}{SWEEPS}");
+    let mut times = BTreeSet::new();
+    for entry in fs::read_dir(root.join(&place)).map_err(|error| unreadable(&place, &error))? {
+        let name = entry.map_err(|error| unreadable(&place, &error))?.file_name();
+        let number = name.to_str().and_then(|name| name.strip_suffix(".feather"));
+        let time = number.and_then(|number| number.parse::<i64>().ok());
+        times.extend(time.filter(|time| number == Some(time.to_string().as_str())));
+    }
+    Ok(times)
+}
+
+fn sweep_header(
+    scene: &str,
+    folder: &str,
+    time_ns: i64,
+    lidars: &Lidars,
+    ego_poses: &HashMap<i64, Pose>,
+) -> Result<SweepHeader, Fault> {
+    let file = format!("{folder}{SWEEPS}{time_ns}.feather");
+    let pose = ego_poses.get(&time_ns);
+    let without = || Fault::new("ego-pose", &file, "an ego pose of the sweep's time", "none");
+    Ok(SweepHeader {
+        time: Timestamp(time_ns),
+        lidar: LIDAR.to_owned(),
+        source_id: format!("{scene}/{time_ns}"),
+        world_from_ego: *pose.ok_or_else(without)?,
+        ego_from_lidar: lidars.ego_from_up,
+        labelled: false,
+        file,
+    })
+}
