@@ -22,14 +22,17 @@
 mod files;
 mod inventory;
 mod keyframes;
+mod mcap;
 mod names;
 mod notes;
 mod nuscenes;
 mod options;
 mod source;
 mod waymo;
+mod wire;
 
 pub use inventory::{Inventory, MissingFile};
+pub use mcap::{McapLog, McapOptions, TimeSource};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder};
 pub use options::ReadOptions;
 pub use source::{ReaderDefaults, SceneSource, SweepPoints};

@@ -9,7 +9,7 @@ use super::segment::{
     CameraCalibration, Inclinations, Lidar, LidarCalibration, Place, camera_name,
 };
 use super::transform::{A_POSE, pose_from_matrix};
-use super::wire::{Defect, Fields, Span};
+use crate::wire::{Defect, Fields, Span};
 
 /// A segment's sensors.
 #[derive(Clone, Debug, Default)]

@@ -26,7 +26,6 @@ mod tfrecord;
 mod tfrecords;
 mod tracks;
 mod transform;
-mod wire;
 
 use std::path::Path;
 use std::slice;

@@ -1,0 +1,103 @@
+//! Logs that others wrote: points, poses, boxes and calibrations are those of their sources.
+
+use nalgebra::{Point3, Vector3};
+use occlabel_core::{McapSettings, PointCloud, PointLabel};
+use occlabel_logs::SceneSource;
+use serde_json::Value;
+
+use crate::support::{apart, folder_of, open, options, shared};
+
+fn expected(name: &str) -> Value {
+    let text = std::fs::read_to_string(shared(name).unwrap()).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+fn mean(cloud: &PointCloud<PointLabel>) -> Point3<f64> {
+    let sum: Vector3<f64> = cloud.positions.iter().map(|point| point.coords).sum();
+    Point3::from(sum / cloud.len() as f64)
+}
+
+fn point(value: &Value) -> Point3<f64> {
+    Point3::new(value[0].as_f64().unwrap(), value[1].as_f64().unwrap(), value[2].as_f64().unwrap())
+}
+
+#[test]
+fn ros2_cdr_gives_sweeps_poses_and_optics() {
+    let Some(file) = shared("mcap/kitti0002_ros2.mcap") else { return };
+    let folder = folder_of(&file);
+    let log = open(folder.path(), options(&[], McapSettings::default()));
+    let (scene, expected) =
+        (log.load("kitti0002_ros2").unwrap(), expected("mcap/kitti0002_ros2.expected.json"));
+    assert!(scene.refused.is_empty(), "{:?}", scene.refused);
+    let sweeps = expected["sweeps"].as_array().unwrap();
+    assert_eq!((scene.sweeps.len(), sweeps.len()), (8, 8));
+    for (sweep, told) in scene.sweeps.iter().zip(sweeps) {
+        assert_eq!(Some(sweep.time.0), told["stamp_ns"].as_i64());
+        assert_eq!(sweep.lidar, "velo_link");
+        let off = apart(&sweep.world_from_lidar(), &told["map_from_velo_link"]);
+        assert!(off < 1e-6, "{off}");
+        let cloud = log.read_sweep(sweep).unwrap().cloud;
+        assert_eq!(Some(cloud.len() as u64), told["points"].as_u64());
+        assert!((cloud.positions[0] - point(&told["first_point"])).norm() < 1e-6);
+        let in_map = sweep.world_from_lidar() * mean(&cloud);
+        let off = (in_map - point(&told["mean_in_map"])).norm();
+        assert!(off < 1e-6, "{off}");
+    }
+    let camera = &scene.cameras[0].camera;
+    assert_eq!((camera.width, camera.height, camera.model.name()), (1242, 375, "pinhole"));
+    let matrix = camera.model.intrinsics().unwrap().matrix();
+    let told = expected["camera"]["K"].as_array().unwrap();
+    assert!(matrix.as_flattened().iter().zip(told).all(|(a, b)| Some(*a) == b.as_f64()));
+    let (keyframe, reference) = (&scene.keyframes[2], &scene.sweeps[scene.keyframes[2].sweep]);
+    assert_eq!((scene.keyframes.len(), keyframe.exposures.len()), (8, 1));
+    let lidar_from_world = reference.world_from_lidar().inverse();
+    let lidar_from_camera = lidar_from_world * keyframe.exposures[0].world_from_camera;
+    let off = apart(&lidar_from_camera, &expected["camera"]["velo_link_from_camera"]);
+    assert!(off < 0.2, "the camera was exposed within 0.1 s: {off}");
+}
+
+#[test]
+fn foxglove_protobuf_gives_sweeps_and_boxes_with_their_points() {
+    let Some(file) = shared("mcap/av2_foxglove.mcap") else { return };
+    let folder = folder_of(&file);
+    let log = open(folder.path(), options(&[], McapSettings::default()));
+    let (scene, expected) =
+        (log.load("av2_foxglove").unwrap(), expected("mcap/av2_foxglove.expected.json"));
+    assert!(scene.refused.is_empty(), "{:?}", scene.refused);
+    let sweeps = expected["sweeps"].as_array().unwrap();
+    assert_eq!((scene.sweeps.len(), scene.cameras.len()), (4, 9));
+    let mut in_world = Vec::new();
+    for told in sweeps {
+        let lidar = told["topic"].as_str().unwrap().trim_start_matches("/lidar/");
+        let is_it = |sweep: &&occlabel_core::SweepHeader| {
+            Some(sweep.time.0) == told["timestamp_ns"].as_i64() && sweep.lidar == lidar
+        };
+        let sweep = scene.sweeps.iter().find(is_it).unwrap();
+        let off = apart(&sweep.world_from_lidar(), &told["map_from_lidar"]);
+        assert!(off < 1e-6, "{off}");
+        let cloud = log.read_sweep(sweep).unwrap().cloud;
+        assert_eq!(Some(cloud.len() as u64), told["points"].as_u64());
+        let off = (sweep.ego_from_lidar * mean(&cloud) - point(&told["mean_in_base_link"])).norm();
+        assert!(off < 1e-6, "{off}");
+        let place = sweep.world_from_lidar();
+        in_world.extend(cloud.positions.iter().map(|point| (sweep.time, place * point)));
+    }
+    let boxes = expected["boxes"].as_array().unwrap();
+    assert_eq!(boxes.len(), 162);
+    for told in boxes {
+        let track =
+            scene.tracks.iter().find(|track| Some(track.source_id.as_str()) == told["id"].as_str());
+        let track = track.unwrap();
+        assert_eq!(Some(track.category.as_str()), told["category"].as_str());
+        let at = told["timestamp_ns"].as_i64();
+        let (time, boxed) = track.boxes.iter().find(|(time, _)| Some(time.0) == at).unwrap();
+        let center = Point3::from(boxed.world_from_box.translation.vector);
+        assert!((center - point(&told["center_map"])).norm() < 1e-6);
+        let (inverse, half) = (boxed.world_from_box.inverse(), boxed.size_m / 2.0);
+        let inside = in_world.iter().filter(|(then, point)| {
+            let p = inverse * point;
+            then == time && (0..3).all(|axis| p[axis].abs() <= half[axis])
+        });
+        assert_eq!(Some(inside.count() as u64), told["num_interior_pts"].as_u64(), "{told}");
+    }
+}
