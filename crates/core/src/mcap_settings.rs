@@ -24,12 +24,12 @@ pub struct McapSettings {
     pub max_transform_gap_s: f64,
     /// The taxonomy that `taxonomy.file = "auto"` means: a shipped one, or a path.
     pub taxonomy: String,
+    /// Topics of boxes; none: all.
+    pub boxes: Vec<String>,
     /// Topics of clouds, with the names of their lidars; none: all, named by their frames.
     pub lidars: BTreeMap<String, String>,
     /// Topics of calibrations, with the names of their cameras; none: all, named by their frames.
     pub cameras: BTreeMap<String, String>,
-    /// Topics of boxes; none: all.
-    pub boxes: Vec<String>,
     /// Raw point labels, with their names in the taxonomy's `[points]`.
     pub classes: BTreeMap<String, String>,
     /// Raw categories of boxes, with their names in the taxonomy's `[boxes]`.

@@ -56,6 +56,18 @@ impl Frames {
         several.map(fault).collect()
     }
 
+    /// A line for each frame: how it stands in its parent.
+    pub(super) fn describe(&self) -> Vec<String> {
+        let links = self.links.iter().flat_map(|(child, parents)| {
+            parents.iter().map(move |(parent, poses)| (child, parent, poses.len()))
+        });
+        let line = |(child, parent, poses): (&String, &String, usize)| match poses {
+            1 => format!("frame {child} in {parent}: fixed"),
+            _ => format!("frame {child} in {parent}: {poses} poses"),
+        };
+        links.map(line).collect()
+    }
+
     /// The frame, its parent, its parent's parent, and so on.
     pub(super) fn ancestors<'a>(&'a self, frame: &'a str) -> Vec<&'a str> {
         let (mut chain, mut seen) = (vec![frame], BTreeSet::from([frame]));

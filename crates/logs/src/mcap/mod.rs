@@ -6,6 +6,8 @@
 
 mod cameras;
 mod classes;
+#[cfg(test)]
+mod conformance;
 mod container;
 mod dispatch;
 mod frames;
@@ -17,7 +19,10 @@ mod points;
 mod protobuf;
 mod recording;
 mod ros;
+#[cfg(test)]
+mod ros_tests;
 mod scene;
+mod survey;
 mod sweep_points;
 mod sweeps;
 mod tracks;
@@ -107,6 +112,13 @@ impl SceneSource for McapLog {
 
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {
         vec![sweep.file.clone()]
+    }
+
+    fn describe(&self, scene: &str) -> Result<Vec<String>, Fault> {
+        match self.scenes.iter().find(|known| known.name == scene) {
+            Some(known) => survey::survey(&self.root, &known.file, &self.options),
+            None => Ok(Vec::new()),
+        }
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {

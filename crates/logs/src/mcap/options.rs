@@ -43,6 +43,20 @@ pub(super) enum Purpose {
     Pictures,
 }
 
+impl Purpose {
+    /// For people.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Sweeps => "sweeps",
+            Self::Transforms => "transforms",
+            Self::Optics => "calibrations of a camera",
+            Self::Boxes => "boxes",
+            Self::BodyMask => "a body mask",
+            Self::Pictures => "times of images",
+        }
+    }
+}
+
 /// What a channel is read for: its schema decides, and which topics the settings name.
 pub(super) fn purpose(settings: &McapSettings, channel: &Channel) -> Option<Purpose> {
     let topic = &channel.topic;

@@ -146,7 +146,7 @@ mod tests {
             |cloud| cloud.rows = 3,
             |cloud| cloud.point_step = 0,
             |cloud| (cloud.width, cloud.point_step) = (usize::MAX, 2),
-            |cloud| drop(cloud.data.pop()),
+            |cloud| cloud.data.truncate(21),
             |cloud| cloud.fields[0].offset = usize::MAX,
             |cloud| cloud.fields[2].name = "w".into(),
         ];

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use occlabel_core::{McapSettings, PointCloud, PointLabel};
-use occlabel_logs::SceneSource;
+use occlabel_logs::{McapOptions, SceneSource, TimeSource};
 use serde_json::Value;
 
 use crate::support::{apart, folder_of, open, options, shared};
@@ -100,4 +100,53 @@ fn foxglove_protobuf_gives_sweeps_and_boxes_with_their_points() {
         });
         assert_eq!(Some(inside.count() as u64), told["num_interior_pts"].as_u64(), "{told}");
     }
+}
+
+#[test]
+fn a_description_names_topics_and_frames_and_fills_the_table_in() {
+    let Some(file) = shared("mcap/kitti0002_ros2.mcap") else { return };
+    let folder = folder_of(&file);
+    let log = open(folder.path(), options(&[], McapSettings::default()));
+    let lines = log.describe("kitti0002_ros2").unwrap();
+    for line in [
+        "/kitti/velo/pointcloud: cdr sensor_msgs/msg/PointCloud2, sweeps",
+        "/tf_static: cdr tf2_msgs/msg/TFMessage, transforms",
+        "frame base_link in map: 10 poses",
+        "frame velo_link in imu_link: fixed",
+        "world_frame = \"map\"",
+        "ego_frame = \"base_link\"",
+        "\"/kitti/velo/pointcloud\" = \"velo_link\"",
+    ] {
+        assert!(lines.iter().any(|found| found == line), "no {line} in {lines:#?}");
+    }
+}
+
+#[test]
+fn fault_33_a_file_without_its_end_is_read_with_recover_only() {
+    let Some(file) = shared("mcap/kitti0002_ros2.mcap") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let whole = std::fs::read(file).unwrap();
+    std::fs::write(folder.path().join("cut.mcap"), &whole[..whole.len() * 3 / 4]).unwrap();
+    let strict = options(&[], McapSettings::default());
+    let recovering = McapOptions { recover: true, ..strict.clone() };
+    let fault = open(folder.path(), strict).load("cut").unwrap_err();
+    assert!(fault.offset.is_some() && fault.hint.is_some(), "{fault}");
+    let scene = open(folder.path(), recovering).load("cut").unwrap();
+    assert!((1..8).contains(&scene.sweeps.len()), "{}", scene.sweeps.len());
+    assert!(!scene.refused.is_empty());
+}
+
+#[test]
+fn fault_17_the_log_s_time_counts_if_it_is_asked_for() {
+    let Some(file) = shared("mcap/kitti0002_ros2.mcap") else { return };
+    let folder = folder_of(&file);
+    let header = options(&[], McapSettings::default());
+    let log = McapOptions { time_source: TimeSource::Log, ..header.clone() };
+    let times = |options| {
+        let scene = open(folder.path(), options).load("kitti0002_ros2").unwrap();
+        scene.sweeps.into_iter().map(|sweep| sweep.time.0).collect::<Vec<_>>()
+    };
+    let (header, log) = (times(header), times(log));
+    let later = log.iter().zip(&header).map(|(log, header)| log - header);
+    assert!(later.into_iter().all(|ns| (61_000_000..63_000_000).contains(&ns)), "{log:?}");
 }
