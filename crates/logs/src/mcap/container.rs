@@ -11,8 +11,9 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-use mcap::read::ChunkReader;
-use mcap::records::{Metadata, Record, SchemaHeader, op};
+use mcap::McapResult;
+use mcap::records::{self, Metadata, Record, SchemaHeader, op};
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use occlabel_core::Fault;
 
 use crate::files::{open_file, unreadable};
@@ -243,9 +244,8 @@ impl Container {
         if header.uncompressed_size > MAX_RECORD_BYTES {
             return Err(self.too_long(start, header.uncompressed_size));
         }
-        let records = ChunkReader::new(header, &data).and_then(|records| {
-            records.map(|record| record.map(Record::into_owned)).collect::<Result<_, _>>()
-        });
+        let whole = 40 + header.compression.len() + data.len();
+        let records = chunk_records(&body[..whole], header.uncompressed_size as usize);
         records.map_err(|error| self.fault(start, "mcap-chunk", "a sound chunk", error.to_string()))
     }
 
@@ -333,6 +333,33 @@ impl Container {
     }
 }
 
+/// The records of a chunk whose body this is, without what fills it up; its checksum is verified.
+/// No record in it is believed to be longer than the chunk.
+fn chunk_records(body: &[u8], uncompressed_bytes: usize) -> McapResult<Vec<Record<'static>>> {
+    const ROOM_FOR_BLOCKS: usize = 1 << 18;
+    let options = LinearReaderOptions::default()
+        .with_skip_start_magic(true)
+        .with_skip_end_magic(true)
+        .with_validate_chunk_crcs(true)
+        .with_record_length_limit(uncompressed_bytes.max(ROOM_FOR_BLOCKS));
+    let mut reader = LinearReader::new_with_options(options);
+    let framing = [&[op::CHUNK][..], &(body.len() as u64).to_le_bytes()].concat();
+    let mut source = framing.as_slice().chain(body);
+    let mut records = Vec::new();
+    while let Some(event) = reader.next_event() {
+        match event? {
+            LinearReadEvent::ReadRequest(need) => {
+                let read = source.read(reader.insert(need))?;
+                reader.notify_read(read);
+            }
+            LinearReadEvent::Record { data, opcode } => {
+                records.push(mcap::parse_record(opcode, data)?.into_owned());
+            }
+        }
+    }
+    Ok(records)
+}
+
 impl Contents {
     /// Takes note of a schema, channel or metadata record; of several of one number the first counts.
     fn add(&mut self, record: Record<'_>) {
@@ -341,16 +368,23 @@ impl Contents {
                 let schema = || Schema { name, data: data.into_owned() };
                 self.schemas.entry(id).or_insert_with(schema);
             }
-            Record::Channel(channel) => {
-                let schema = || self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
-                let entry = self.channels.entry(channel.id);
-                entry.or_insert_with(|| {
-                    let (topic, encoding) = (channel.topic, channel.message_encoding);
-                    Arc::new(Channel { topic, encoding, schema: schema() })
-                });
-            }
+            Record::Channel(channel) => self.add_channel(channel),
             Record::Metadata(metadata) => self.metadata.push(metadata),
             _ => {}
         }
+    }
+
+    /// A summary may repeat channels without their schemas: such a channel waits for its own record.
+    fn add_channel(&mut self, channel: records::Channel) {
+        let records::Channel { id, schema_id, topic, message_encoding: encoding, .. } = channel;
+        let schema = match schema_id {
+            0 => Schema::default(),
+            _ => match self.schemas.get(&schema_id) {
+                Some(schema) => schema.clone(),
+                None => return,
+            },
+        };
+        let channel = || Arc::new(Channel { topic, encoding, schema });
+        self.channels.entry(id).or_insert_with(channel);
     }
 }

@@ -1,7 +1,9 @@
 //! Logs that others wrote: points, poses, boxes and calibrations are those of their sources.
 
 use nalgebra::{Point3, Vector3};
-use occlabel_core::{McapSettings, PointCloud, PointLabel};
+use occlabel_core::{
+    BoxTrack, McapSettings, PointCloud, PointLabel, Scene, SweepHeader, Timestamp,
+};
 use occlabel_logs::{McapOptions, SceneSource, TimeSource};
 use serde_json::Value;
 
@@ -69,7 +71,7 @@ fn foxglove_protobuf_gives_sweeps_and_boxes_with_their_points() {
     let mut in_world = Vec::new();
     for told in sweeps {
         let lidar = told["topic"].as_str().unwrap().trim_start_matches("/lidar/");
-        let is_it = |sweep: &&occlabel_core::SweepHeader| {
+        let is_it = |sweep: &&SweepHeader| {
             Some(sweep.time.0) == told["timestamp_ns"].as_i64() && sweep.lidar == lidar
         };
         let sweep = scene.sweeps.iter().find(is_it).unwrap();
@@ -82,13 +84,20 @@ fn foxglove_protobuf_gives_sweeps_and_boxes_with_their_points() {
         let place = sweep.world_from_lidar();
         in_world.extend(cloud.positions.iter().map(|point| (sweep.time, place * point)));
     }
-    let boxes = expected["boxes"].as_array().unwrap();
+    assert_boxes_hold_their_points(&scene, &expected["boxes"], &in_world);
+}
+
+fn assert_boxes_hold_their_points(
+    scene: &Scene,
+    boxes: &Value,
+    in_world: &[(Timestamp, Point3<f64>)],
+) {
+    let boxes = boxes.as_array().unwrap();
     assert_eq!(boxes.len(), 162);
     for told in boxes {
-        let track =
-            scene.tracks.iter().find(|track| Some(track.source_id.as_str()) == told["id"].as_str());
-        let track = track.unwrap();
-        assert_eq!(Some(track.category.as_str()), told["category"].as_str());
+        let is_it = |track: &&BoxTrack| told["id"] == track.source_id.as_str();
+        let track = scene.tracks.iter().find(is_it).unwrap();
+        assert_eq!(told["category"], track.category.as_str());
         let at = told["timestamp_ns"].as_i64();
         let (time, boxed) = track.boxes.iter().find(|(time, _)| Some(time.0) == at).unwrap();
         let center = Point3::from(boxed.world_from_box.translation.vector);
