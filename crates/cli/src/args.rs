@@ -84,6 +84,12 @@ pub(crate) struct LogArgs {
     /// Take raw labels and categories that the taxonomy does not name as this class.
     #[arg(long, value_name = "CLASS")]
     pub(crate) unknown_as: Option<String>,
+    /// MCAP: which of a message's times counts.
+    #[arg(long, value_enum, default_value_t = TimeSourceArg::Header)]
+    pub(crate) time_source: TimeSourceArg,
+    /// MCAP: read a broken file up to where it is broken.
+    #[arg(long)]
+    pub(crate) recover: bool,
 }
 
 /// What decides the labels.
@@ -233,6 +239,16 @@ pub(crate) enum Format {
     Semantickitti,
     /// Argoverse 2 sensor logs.
     Av2,
+    /// MCAP files, one scene each: ROS 1, ROS 2 and Foxglove messages.
+    Mcap,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TimeSourceArg {
+    /// The messages' own times.
+    Header,
+    /// The times at which they were recorded.
+    Log,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -4,14 +4,15 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use occlabel_core::{ClassId, Fault, Taxonomy};
+use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_logs::{
-    Argoverse2Log, NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions,
-    ReaderDefaults, SceneSource, SemanticKittiLog, WaymoLog,
+    Argoverse2Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions, PointColumns,
+    QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource,
+    WaymoLog,
 };
 use occlabel_pipeline::{Autos, Config, Rules, parse_taxonomy, preset, shipped_taxonomy};
 
-use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder};
+use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
 use crate::presets::unknown_preset;
 
@@ -32,7 +33,11 @@ pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
     let (preset, mut config) = read_config(args).map_err(Stop::usage)?;
     check_input(log).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
-    let autos = autos(format_defaults(log).map_err(usage_or_failed)?);
+    let mcap = config.reader.mcap.clone();
+    let mut autos = autos(format_defaults(log, &mcap).map_err(usage_or_failed)?);
+    if log.format == Format::Mcap {
+        autos.taxonomy.clone_from(&mcap.taxonomy);
+    }
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
@@ -42,12 +47,16 @@ pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
         taxonomy,
         keyframes: config.keyframes.clone(),
     };
-    let source = open_format(log, options).map_err(usage_or_failed)?;
+    let source = open_format(log, options, mcap).map_err(usage_or_failed)?;
     Ok(Opened { source, preset, config, taxonomy_hash, rules })
 }
 
 /// Opens a log by its format.
-fn open_format(log: &LogArgs, read: ReadOptions) -> Result<Box<dyn SceneSource>, Fault> {
+fn open_format(
+    log: &LogArgs,
+    read: ReadOptions,
+    mcap: McapSettings,
+) -> Result<Box<dyn SceneSource>, Fault> {
     match log.format {
         Format::Nuscenes => {
             let options = nuscenes_options(log, read);
@@ -58,16 +67,21 @@ fn open_format(log: &LogArgs, read: ReadOptions) -> Result<Box<dyn SceneSource>,
         Format::Semantickitti => {
             SemanticKittiLog::open(&log.input, read).map(|log| Box::new(log) as _)
         }
+        Format::Mcap => {
+            let options = mcap_options(log, read, mcap);
+            McapLog::open(&log.input, options).map(|log| Box::new(log) as _)
+        }
     }
 }
 
 /// What the format itself says where the configuration says `"auto"`.
-fn format_defaults(log: &LogArgs) -> Result<ReaderDefaults, Fault> {
+fn format_defaults(log: &LogArgs, mcap: &McapSettings) -> Result<ReaderDefaults, Fault> {
     match log.format {
         Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref()),
         Format::Waymo => WaymoLog::format_defaults(&log.input),
         Format::Av2 => Ok(Argoverse2Log::format_defaults()),
         Format::Semantickitti => Ok(SemanticKittiLog::format_defaults()),
+        Format::Mcap => McapLog::format_defaults(&log.input, mcap),
     }
 }
 
@@ -87,6 +101,14 @@ fn nuscenes_options(log: &LogArgs, read: ReadOptions) -> NuScenesOptions {
     }
 }
 
+fn mcap_options(log: &LogArgs, read: ReadOptions, settings: McapSettings) -> McapOptions {
+    let time_source = match log.time_source {
+        TimeSourceArg::Header => TimeSource::Header,
+        TimeSourceArg::Log => TimeSource::Log,
+    };
+    McapOptions { read, settings, time_source, recover: log.recover }
+}
+
 /// What the user named wrongly is a matter of usage; what the log holds wrongly is not.
 fn usage_or_failed(fault: Fault) -> Stop {
     match fault.rule {
@@ -97,7 +119,9 @@ fn usage_or_failed(fault: Fault) -> Stop {
         | "waymo-v2"
         | "av2"
         | "av2-layout"
-        | "semantickitti-layout" => Stop::usage(fault),
+        | "semantickitti-layout"
+        | "mcap-files"
+        | "mcap-clouds" => Stop::usage(fault),
         _ => fault.into(),
     }
 }

@@ -15,6 +15,10 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, Stop
     console.result(&format!("{} scenes", names.len()));
     let (mut outcome, mut faults) = (Outcome::Complete, Vec::new());
     for name in names {
+        match opened.source.describe(&name) {
+            Ok(lines) => lines.iter().for_each(|line| console.result(&printable(line))),
+            Err(fault) => console.warning(&name, &fault),
+        }
         let scene = match opened.source.load(&name) {
             Ok(scene) => scene,
             Err(fault) => {

@@ -27,6 +27,7 @@ mod fault;
 mod grid;
 mod instant;
 mod keyframes;
+mod mcap_settings;
 mod occupancy;
 mod pose;
 mod scene;
@@ -46,6 +47,7 @@ pub use fault::{Fault, printable};
 pub use grid::{GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};
 pub use instant::{Instant, PlacedObject, StandingBox};
 pub use keyframes::{KeyframeSettings, KeyframeSource, reference_lidar};
+pub use mcap_settings::McapSettings;
 pub use occupancy::{Evidence, OccupancyLabels, RayCounts, VoxelState, VoxelVote};
 pub use pose::{Pose, RigidMap, slerp};
 pub use scene::{

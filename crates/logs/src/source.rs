@@ -13,6 +13,15 @@ pub trait SceneSource: Sync {
     /// The files of a sweep, its points first, relative to the log's root.
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String>;
 
+    /// What a scene's file holds and how it is read, a line each, for people who have to tell the
+    /// reader; nothing where the format leaves nothing open.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    fn describe(&self, _scene: &str) -> Result<Vec<String>, Fault> {
+        Ok(Vec::new())
+    }
+
     /// Everything of a scene but its points.
     ///
     /// # Errors

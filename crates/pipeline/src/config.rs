@@ -1,7 +1,7 @@
 //! The configuration: every key of labels.md section 14, under its name there.
 
 use occlabel_annotate::{BoxSettings, GhostClasses};
-use occlabel_core::{Fault, GridSpec, KeyframeSettings, Taxonomy};
+use occlabel_core::{Fault, GridSpec, KeyframeSettings, McapSettings, Taxonomy};
 use occlabel_occlusion::OcclusionSettings;
 use occlabel_raycast::{RaySettings, StateSettings};
 use occlabel_voxelize::VoteSettings;
@@ -33,6 +33,24 @@ pub struct Config {
     pub occlusion: OcclusionSettings,
     /// What the classes are.
     pub taxonomy: TaxonomyTable,
+    /// How to read what a format leaves open.
+    #[serde(default, skip_serializing_if = "ReaderTables::say_nothing")]
+    pub reader: ReaderTables,
+}
+
+/// The tables `[reader.*]`: how to read a log, not what a label means. They may be absent.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ReaderTables {
+    /// MCAP logs.
+    pub mcap: McapSettings,
+}
+
+impl ReaderTables {
+    /// Whether everything is as it is without these tables.
+    fn say_nothing(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// The `[grid]` table.
@@ -284,6 +302,17 @@ mod tests {
         let fault = with(&["raycast.speed=9"]).unwrap_err().to_string();
         assert!(fault.contains("speed"), "{fault}");
         assert!(with(&["magic.key=1"]).is_err() && with(&["raycast=1"]).is_err());
+    }
+
+    #[test]
+    fn section_14_reader_tables_may_be_absent_and_their_keys_are_checked() {
+        assert!(!toml::to_string(&with(&[]).unwrap()).unwrap().contains("reader"));
+        let config = with(&["reader.mcap.ego_frame=hull", "reader.mcap.time_unit_s=1e-6"]).unwrap();
+        assert_eq!(config.reader.mcap.ego_frame, "hull");
+        assert_eq!(config.reader.mcap.world_frame, "auto");
+        let fault = with(&["reader.mcap.speed=9"]).unwrap_err().to_string();
+        assert!(fault.contains("speed"), "{fault}");
+        assert!(with(&["reader.kitti.speed=9"]).is_err());
     }
 
     #[test]

@@ -29,7 +29,8 @@ fn parse_table(text: &str, place: &str) -> Result<toml::Table, Fault> {
     })
 }
 
-/// Lays `upper` over `lower`, table by table. Every key must be there already, under its path.
+/// Lays `upper` over `lower`, table by table. Every key must be there already, under its path, but
+/// for the tables of readers, which no base states.
 fn overlay(
     place: &str,
     path: &str,
@@ -43,10 +44,15 @@ fn overlay(
                 overlay(place, &name, under, over)?;
             }
             (Some(under), value) => *under = value,
+            (None, value) if is_optional(&name) => drop(lower.insert(key, value)),
             (None, _) => return Err(unknown_key(place, path, lower, &name)),
         }
     }
     Ok(())
+}
+
+fn is_optional(name: &str) -> bool {
+    name == "reader" || name.starts_with("reader.")
 }
 
 fn unknown_key(place: &str, path: &str, known: &toml::Table, name: &str) -> Fault {

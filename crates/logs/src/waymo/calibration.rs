@@ -8,8 +8,8 @@ use super::frame::{broken, transform};
 use super::segment::{
     CameraCalibration, Inclinations, Lidar, LidarCalibration, Place, camera_name,
 };
-use super::wire::{Defect, Fields, Span};
 use crate::transform::{A_POSE, pose_from_matrix};
+use crate::wire::{Defect, Fields, Span};
 
 /// A segment's sensors.
 #[derive(Clone, Debug, Default)]

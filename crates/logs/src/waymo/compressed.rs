@@ -5,7 +5,7 @@ use std::io::{Cursor, Read};
 use flate2::read::ZlibDecoder;
 
 use super::matrix::Matrix;
-use super::wire::{Defect, Fields, Span, packed_integers};
+use crate::wire::{Defect, Fields, Span, packed_integers};
 
 /// A `float` takes 4 bytes.
 const FLOAT_BYTES: usize = 4;

@@ -9,8 +9,8 @@ use occlabel_core::{Fault, Timestamp};
 
 use super::calibration::{Context, read_context};
 use super::segment::{BoxLabel, Frame, Image, Lidar, LidarCalibration, Place, camera_name};
-use super::wire::{Defect, Fields, Span, Value, first_of, text};
 use crate::transform::{A_POSE, pose_from_matrix};
+use crate::wire::{Defect, Fields, Span, Value, first_of, text};
 
 /// Fields of `Frame`.
 const CONTEXT: u32 = 1;

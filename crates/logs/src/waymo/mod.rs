@@ -25,7 +25,6 @@ mod sweep_id;
 mod tfrecord;
 mod tfrecords;
 mod tracks;
-mod wire;
 
 use std::path::Path;
 use std::slice;

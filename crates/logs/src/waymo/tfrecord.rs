@@ -11,7 +11,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 
 use occlabel_core::Fault;
 
-use super::wire::Span;
+use crate::wire::Span;
 
 /// Bytes before a record's data.
 const HEAD_BYTES: u64 = 12;

@@ -19,8 +19,8 @@ use super::range_image::{LABEL, PIXEL, POSE, RangeImages, Return};
 use super::segment::{Frame, Lidar, LidarCalibration, Place, Segment};
 use super::sweep_id::SweepId;
 use super::tfrecord::{index_records, read_record};
-use super::wire::{Fields, Span};
 use crate::files::open_file;
+use crate::wire::{Fields, Span};
 
 /// The frames of a folder's TFRecord files, by segment.
 #[derive(Debug)]

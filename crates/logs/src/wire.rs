@@ -12,21 +12,21 @@ const MAX_VALUE_BYTES: u64 = 1 << 20;
 
 /// A range of bytes of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Span {
-    pub(super) start: u64,
-    pub(super) end: u64,
+pub(crate) struct Span {
+    pub(crate) start: u64,
+    pub(crate) end: u64,
 }
 
 impl Span {
     /// Bytes in it.
-    pub(super) fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         self.end - self.start
     }
 }
 
 /// What a field holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Varint(u64),
     Fixed64(u64),
     Fixed32(u32),
@@ -35,10 +35,10 @@ pub(super) enum Value {
 
 /// What is wrong with a message, and at which byte of its source.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Defect {
-    pub(super) at: u64,
-    pub(super) expected: &'static str,
-    pub(super) found: String,
+pub(crate) struct Defect {
+    pub(crate) at: u64,
+    pub(crate) expected: &'static str,
+    pub(crate) found: String,
 }
 
 /// Walks the fields of a message.
@@ -113,7 +113,7 @@ impl<'a, S: Read + Seek> Walk<'a, S> {
 }
 
 /// The first field of each number, in a walk that ends when all are found.
-pub(super) fn first_of<S: Read + Seek, const N: usize>(
+pub(crate) fn first_of<S: Read + Seek, const N: usize>(
     source: &mut S,
     span: Span,
     numbers: [u32; N],
@@ -132,11 +132,11 @@ pub(super) fn first_of<S: Read + Seek, const N: usize>(
 /// The fields of a message, to be asked for by number. Where one stands there several times, the
 /// last counts.
 #[derive(Debug, Default)]
-pub(super) struct Fields(Vec<(u32, Value)>);
+pub(crate) struct Fields(Vec<(u32, Value)>);
 
 impl Fields {
     /// Walks the message that fills a span.
-    pub(super) fn read<S: Read + Seek>(source: &mut S, span: Span) -> Result<Self, Defect> {
+    pub(crate) fn read<S: Read + Seek>(source: &mut S, span: Span) -> Result<Self, Defect> {
         let mut walk = Walk::new(source, span)?;
         let mut fields = Vec::new();
         while let Some(field) = walk.next()? {
@@ -153,7 +153,7 @@ impl Fields {
     }
 
     /// All texts, byte strings or messages of that number, in order.
-    pub(super) fn all(&self, number: u32) -> impl DoubleEndedIterator<Item = Span> {
+    pub(crate) fn all(&self, number: u32) -> impl DoubleEndedIterator<Item = Span> {
         self.values(number).filter_map(|value| match value {
             Value::Bytes(span) => Some(span),
             _ => None,
@@ -161,20 +161,28 @@ impl Fields {
     }
 
     /// The text, byte string or message.
-    pub(super) fn bytes(&self, number: u32) -> Option<Span> {
+    pub(crate) fn bytes(&self, number: u32) -> Option<Span> {
         self.all(number).next_back()
     }
 
     /// The integer.
-    pub(super) fn integer(&self, number: u32) -> Option<i64> {
+    pub(crate) fn integer(&self, number: u32) -> Option<i64> {
         self.values(number).rev().find_map(|value| match value {
             Value::Varint(bits) => Some(bits as i64),
             _ => None,
         })
     }
 
+    /// The `fixed32`.
+    pub(crate) fn fixed32(&self, number: u32) -> Option<u32> {
+        self.values(number).rev().find_map(|value| match value {
+            Value::Fixed32(bits) => Some(bits),
+            _ => None,
+        })
+    }
+
     /// The `double`.
-    pub(super) fn double(&self, number: u32) -> Option<f64> {
+    pub(crate) fn double(&self, number: u32) -> Option<f64> {
         self.values(number).rev().find_map(|value| match value {
             Value::Fixed64(bits) => Some(f64::from_bits(bits)),
             _ => None,
@@ -182,7 +190,7 @@ impl Fields {
     }
 
     /// The repeated `double`s, packed or not.
-    pub(super) fn doubles<S: Read + Seek>(
+    pub(crate) fn doubles<S: Read + Seek>(
         &self,
         source: &mut S,
         number: u32,
@@ -203,7 +211,7 @@ impl Fields {
     }
 
     /// The repeated `int32`s, packed or not.
-    pub(super) fn integers<S: Read + Seek>(
+    pub(crate) fn integers<S: Read + Seek>(
         &self,
         source: &mut S,
         number: u32,
@@ -221,7 +229,7 @@ impl Fields {
 }
 
 /// `int32`s that fill a span.
-pub(super) fn packed_integers<S: Read + Seek>(
+pub(crate) fn packed_integers<S: Read + Seek>(
     source: &mut S,
     span: Span,
 ) -> Result<Vec<i32>, Defect> {
@@ -234,7 +242,7 @@ pub(super) fn packed_integers<S: Read + Seek>(
 }
 
 /// A text; what is no UTF-8 in it is replaced.
-pub(super) fn text<S: Read + Seek>(source: &mut S, span: Span) -> Result<String, Defect> {
+pub(crate) fn text<S: Read + Seek>(source: &mut S, span: Span) -> Result<String, Defect> {
     Ok(String::from_utf8_lossy(&bytes(source, span)?).into_owned())
 }
 

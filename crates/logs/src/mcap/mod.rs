@@ -1,0 +1,187 @@
+//! Logs as MCAP files, one scene each.
+//!
+//! No topic's name is assumed: messages are told apart by encoding and schema, frames by the tree
+//! that transforms span. Encodings turn messages into the values of `messages`; from there on,
+//! nothing knows which it was. docs/mcap.md names every schema and field that is read.
+
+mod cameras;
+mod classes;
+#[cfg(test)]
+mod conformance;
+mod container;
+mod dispatch;
+mod frames;
+mod json;
+mod layout;
+mod messages;
+mod options;
+mod points;
+mod protobuf;
+mod recording;
+mod ros;
+#[cfg(test)]
+mod ros_tests;
+mod scene;
+mod survey;
+mod sweep_points;
+mod sweeps;
+mod tracks;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, McapSettings, Scene, SweepHeader};
+
+use crate::files::unreadable;
+use crate::names::{nearest_names, quoted};
+use crate::{ReaderDefaults, SceneSource, SweepPoints};
+
+pub use options::{McapOptions, TimeSource};
+use scene::{Loaded, lidars_of};
+
+/// A folder of MCAP files.
+#[derive(Debug)]
+pub struct McapLog {
+    root: PathBuf,
+    options: McapOptions,
+    scenes: Vec<SceneFile>,
+    defaults: ReaderDefaults,
+}
+
+/// A scene, read when it is first asked for.
+#[derive(Debug)]
+struct SceneFile {
+    name: String,
+    file: String,
+    loaded: OnceLock<Result<Loaded, Fault>>,
+}
+
+/// How a scene's file ends.
+const ENDING: &str = ".mcap";
+
+impl McapLog {
+    /// Opens a folder: finds its files.
+    ///
+    /// # Errors
+    /// If it holds none, a wanted scene is not there, or no file tells its lidars.
+    pub fn open(root: &Path, options: McapOptions) -> Result<Self, Fault> {
+        let files = mcap_files(root)?;
+        check_wanted(&options, &files)?;
+        let defaults = Self::format_defaults(root, &options.settings)?;
+        let scene = |file: String| {
+            let name = file.strip_suffix(ENDING).unwrap_or(&file).to_owned();
+            SceneFile { name, file, loaded: OnceLock::new() }
+        };
+        let scenes = files.into_iter().map(scene);
+        let scenes = scenes.filter(|scene| options.read.wants(&scene.name)).collect();
+        Ok(Self { root: root.to_owned(), options, scenes, defaults })
+    }
+
+    /// What the log itself says where the configuration says `"auto"`: known before the log is
+    /// opened, at the price of the first chunks of one file.
+    ///
+    /// # Errors
+    /// If there is no file, or none can be read.
+    pub fn format_defaults(root: &Path, settings: &McapSettings) -> Result<ReaderDefaults, Fault> {
+        let mut fault = None;
+        for file in mcap_files(root)? {
+            match lidars_of(root, &file, settings) {
+                Ok(lidars) => return Ok(defaults(&lidars)),
+                Err(found) => drop(fault.get_or_insert(found)),
+            }
+        }
+        Err(fault.unwrap_or_else(|| no_files(root)))
+    }
+
+    fn loaded<'a>(&self, scene: &'a SceneFile) -> &'a Result<Loaded, Fault> {
+        scene
+            .loaded
+            .get_or_init(|| Loaded::read(&self.root, &scene.name, &scene.file, &self.options))
+    }
+}
+
+impl SceneSource for McapLog {
+    fn scene_names(&self) -> Vec<String> {
+        self.scenes.iter().map(|scene| scene.name.clone()).collect()
+    }
+
+    fn tables(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {
+        vec![sweep.file.clone()]
+    }
+
+    fn describe(&self, scene: &str) -> Result<Vec<String>, Fault> {
+        match self.scenes.iter().find(|known| known.name == scene) {
+            Some(known) => survey::survey(&self.root, &known.file, &self.options),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn load(&self, scene: &str) -> Result<Scene, Fault> {
+        match self.scenes.iter().find(|known| known.name == scene) {
+            Some(known) => self.loaded(known).as_ref().map_err(Clone::clone).map(Loaded::scene),
+            None => Err(Fault::new("scene-unknown", scene, "a scene of this log", "none")),
+        }
+    }
+
+    fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
+        let known = self.scenes.iter().find(|scene| scene.file == sweep.file);
+        let unknown = || {
+            let fault = Fault::new("sweep-unknown", &sweep.file, "a sweep of this log", "another");
+            fault.record(&sweep.source_id)
+        };
+        let loaded = self.loaded(known.ok_or_else(unknown)?).as_ref().map_err(Clone::clone)?;
+        loaded.read_sweep(&self.root, sweep, &self.options)?.ok_or_else(unknown)
+    }
+
+    fn defaults(&self) -> ReaderDefaults {
+        self.defaults.clone()
+    }
+}
+
+fn defaults(lidars: &[String]) -> ReaderDefaults {
+    let auto = KeyframeSettings {
+        source: KeyframeSource::Annotated,
+        stride: 1,
+        reference_lidar: "auto".into(),
+    };
+    ReaderDefaults {
+        ego_box_m: None,
+        taxonomy: "occ3d-nuscenes",
+        reference_lidar: auto.choose_lidar(lidars).unwrap_or_else(|| "LIDAR_TOP".into()),
+    }
+}
+
+/// The folder's files, in byte order of their names.
+fn mcap_files(root: &Path) -> Result<Vec<String>, Fault> {
+    let place = root.display().to_string();
+    let mut files = Vec::new();
+    for entry in fs::read_dir(root).map_err(|error| unreadable(&place, &error))? {
+        let entry = entry.map_err(|error| unreadable(&place, &error))?;
+        let name = entry.file_name().into_string().ok();
+        let is_file = |name: &String| name.ends_with(ENDING) && entry.path().is_file();
+        files.extend(name.filter(is_file));
+    }
+    files.sort_unstable();
+    if files.is_empty() { Err(no_files(root)) } else { Ok(files) }
+}
+
+fn no_files(root: &Path) -> Fault {
+    let fault = Fault::new("mcap-files", root.display().to_string(), "files *.mcap", "none");
+    fault.hint("name the folder that holds the files")
+}
+
+/// Whether every scene that is asked for by name is there.
+fn check_wanted(options: &McapOptions, files: &[String]) -> Result<(), Fault> {
+    let names = files.iter().filter_map(|file| file.strip_suffix(ENDING));
+    let names: Vec<&str> = names.collect();
+    let absent = |wanted: &&String| !names.contains(&wanted.as_str());
+    let Some(name) = options.read.scenes.iter().flatten().find(absent) else { return Ok(()) };
+    let fault = Fault::new("scene-unknown", "files", format!("a file `{name}{ENDING}`"), "none");
+    let near = quoted(&nearest_names(name, &names));
+    Err(if near.is_empty() { fault } else { fault.hint(format!("there is {near}")) })
+}

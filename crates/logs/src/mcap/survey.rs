@@ -1,0 +1,67 @@
+//! What a log holds, for those who have to tell the reader what it is for.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use occlabel_core::{Fault, McapSettings};
+
+use super::container::Container;
+use super::layout::{FrameRoles, lidar_names};
+use super::options::{McapOptions, purpose};
+use super::recording::Recording;
+use super::sweeps::label_field;
+use crate::notes::Notes;
+
+/// A line for each topic, frame and cloud of a file; then `[reader.mcap]`, with every `"auto"` and
+/// every empty table filled in as far as the file tells.
+///
+/// # Errors
+/// If it cannot be read.
+pub(super) fn survey(root: &Path, file: &str, options: &McapOptions) -> Result<Vec<String>, Fault> {
+    let (contents, _) = Container::open(root, file)?.contents();
+    let mut lines: Vec<String> = Vec::new();
+    for channel in contents.channels.values() {
+        let read_as = purpose(&options.settings, channel).map_or("not read", |p| p.name());
+        let (topic, schema) = (&channel.topic, &channel.schema.name);
+        lines.push(format!("{topic}: {} {schema}, {read_as}", channel.encoding));
+    }
+    lines.sort();
+    let mut notes = Notes::default();
+    let recording = Recording::read(root, file, options, &mut notes)?;
+    lines.extend(recording.frames.describe());
+    let mut fields: BTreeMap<&str, &[String]> = BTreeMap::new();
+    for cloud in &recording.clouds {
+        fields.entry(&cloud.topic).or_insert(&cloud.fields);
+    }
+    let told =
+        |(topic, fields): (&str, &[String])| format!("{topic}: points of {}", fields.join(", "));
+    lines.extend(fields.into_iter().map(told));
+    lines.extend(table(&filled_in(&recording, &options.settings)));
+    Ok(lines)
+}
+
+/// The settings as a file states them.
+fn table(settings: &McapSettings) -> Vec<String> {
+    let mcap = BTreeMap::from([("mcap", settings)]);
+    let text = toml::to_string(&BTreeMap::from([("reader", mcap)])).unwrap_or_default();
+    text.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect()
+}
+
+fn filled_in(recording: &Recording, settings: &McapSettings) -> McapSettings {
+    let mut filled = settings.clone();
+    if let Ok(FrameRoles { world, ego }) = FrameRoles::find(recording, settings) {
+        (filled.world_frame, filled.ego_frame) = (world, ego);
+    }
+    let label = recording.clouds.iter().find_map(|cloud| label_field(settings, &cloud.fields));
+    filled.label_field = label.unwrap_or("none").to_owned();
+    filled.lidars = lidar_names(&recording.clouds, settings);
+    for (topic, optics) in &recording.optics {
+        let own = || optics.header.frame.clone();
+        filled.cameras.entry(topic.clone()).or_insert_with(own);
+    }
+    for cube in &recording.cubes {
+        let own = || cube.category.clone();
+        filled.categories.entry(cube.category.clone()).or_insert_with(own);
+    }
+    filled
+}
