@@ -75,18 +75,18 @@ pub(crate) struct LogArgs {
     /// Only the scenes listed in this file, one a line; `-` is stdin.
     #[arg(long, value_name = "FILE", conflicts_with = "scenes")]
     pub(crate) scenes_from: Option<PathBuf>,
-    /// The order of quaternions in the tables.
-    #[arg(long, value_enum, default_value_t = QuatOrder::Wxyz)]
-    pub(crate) quat_order: QuatOrder,
-    /// Values per point in sweep files; given, the files are taken at that word.
+    /// nuScenes: the order of quaternions in the tables. [default: wxyz]
+    #[arg(long, value_enum)]
+    pub(crate) quat_order: Option<QuatOrder>,
+    /// nuScenes: values per point in sweep files; given, the files are taken at that word.
     #[arg(long, value_parser = clap::value_parser!(u8).range(4..=5))]
     pub(crate) columns: Option<u8>,
     /// Take raw labels and categories that the taxonomy does not name as this class.
     #[arg(long, value_name = "CLASS")]
     pub(crate) unknown_as: Option<String>,
-    /// MCAP: which of a message's times counts.
-    #[arg(long, value_enum, default_value_t = TimeSourceArg::Header)]
-    pub(crate) time_source: TimeSourceArg,
+    /// MCAP: which of a message's times counts. [default: header]
+    #[arg(long, value_enum)]
+    pub(crate) time_source: Option<TimeSourceArg>,
     /// MCAP: read a broken file up to where it is broken.
     #[arg(long)]
     pub(crate) recover: bool,
@@ -235,7 +235,7 @@ pub(crate) enum Format {
     Nuscenes,
     /// Waymo Open Dataset: TFRecord files (v1), or Parquet components (v2).
     Waymo,
-    /// Scans, labels, poses and times of sequences; no boxes.
+    /// Sequences in the layout of SemanticKITTI, or of KITTI-360.
     Semantickitti,
     /// Argoverse 2 sensor logs.
     Av2,

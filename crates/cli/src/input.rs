@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_logs::{
-    Argoverse2Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions, PointColumns,
+    Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions, PointColumns,
     QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource,
     WaymoLog,
 };
@@ -14,6 +14,7 @@ use occlabel_pipeline::{Autos, Config, Rules, parse_taxonomy, preset, shipped_ta
 
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
+use crate::format_flags::check_flags;
 use crate::presets::unknown_preset;
 
 /// A log, and what decides its labels.
@@ -31,6 +32,7 @@ pub(crate) struct Opened {
 /// Opens the log and resolves the configuration against it.
 pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
     let (preset, mut config) = read_config(args).map_err(Stop::usage)?;
+    check_flags(log).map_err(Stop::usage)?;
     check_input(log).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
     let mcap = config.reader.mcap.clone();
@@ -64,6 +66,9 @@ fn open_format(
         }
         Format::Waymo => WaymoLog::open(&log.input, read).map(|log| Box::new(log) as _),
         Format::Av2 => Argoverse2Log::open(&log.input, read).map(|log| Box::new(log) as _),
+        Format::Semantickitti if Kitti360Log::is_log(&log.input) => {
+            Kitti360Log::open(&log.input, read).map(|log| Box::new(log) as _)
+        }
         Format::Semantickitti => {
             SemanticKittiLog::open(&log.input, read).map(|log| Box::new(log) as _)
         }
@@ -90,8 +95,8 @@ fn nuscenes_options(log: &LogArgs, read: ReadOptions) -> NuScenesOptions {
         read,
         version: log.version.clone(),
         quaternion_order: match log.quat_order {
-            QuatOrder::Wxyz => QuaternionOrder::Wxyz,
-            QuatOrder::Xyzw => QuaternionOrder::Xyzw,
+            Some(QuatOrder::Xyzw) => QuaternionOrder::Xyzw,
+            Some(QuatOrder::Wxyz) | None => QuaternionOrder::Wxyz,
         },
         columns: match log.columns {
             Some(4) => Some(PointColumns::Four),
@@ -103,8 +108,8 @@ fn nuscenes_options(log: &LogArgs, read: ReadOptions) -> NuScenesOptions {
 
 fn mcap_options(log: &LogArgs, read: ReadOptions, settings: McapSettings) -> McapOptions {
     let time_source = match log.time_source {
-        TimeSourceArg::Header => TimeSource::Header,
-        TimeSourceArg::Log => TimeSource::Log,
+        Some(TimeSourceArg::Log) => TimeSource::Log,
+        Some(TimeSourceArg::Header) | None => TimeSource::Header,
     };
     McapOptions { read, settings, time_source, recover: log.recover }
 }

@@ -8,6 +8,7 @@ use crate::args::InspectArgs;
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
 use crate::input::open;
+use crate::lacks::lacks;
 
 pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, Stop> {
     let opened = open(&args.log, &args.config)?;
@@ -27,6 +28,7 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, Stop
             }
         };
         describe(&scene).iter().for_each(|line| console.result(&printable(line)));
+        lacks(&scene, &opened.config).iter().for_each(|lack| console.warning(&name, lack));
         scene.warnings.iter().for_each(|fault| console.warning(&name, fault));
         for refusal in &scene.refused {
             outcome = Outcome::Degraded;

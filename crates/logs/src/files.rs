@@ -37,6 +37,11 @@ pub(crate) fn read_file(root: &Path, name: &str) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
+/// A file's size in bytes; 0 if it cannot be looked at.
+pub(crate) fn file_bytes(root: &Path, name: &str) -> u64 {
+    fs::metadata(root.join(name)).map_or(0, |metadata| metadata.len())
+}
+
 /// What an error of the file system says about a file.
 pub(crate) fn unreadable(place: &str, error: &io::Error) -> Fault {
     match error.kind() {

@@ -57,11 +57,6 @@ impl Inventory {
         Some(self.missing.len() - 1)
     }
 
-    /// Bytes of the files that are there.
-    pub fn present_bytes(&self) -> u64 {
-        self.present.iter().map(|(_, bytes)| bytes).sum()
-    }
-
     /// About how many bytes are missing: each file weighs as the median of the present ones of
     /// its kind.
     pub fn missing_bytes(&self) -> u64 {

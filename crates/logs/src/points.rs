@@ -23,7 +23,8 @@ impl PointColumns {
         }
     }
 
-    fn bytes(self) -> usize {
+    /// Bytes of a point.
+    pub(crate) fn bytes(self) -> usize {
         4 * self.count()
     }
 }

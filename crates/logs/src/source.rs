@@ -28,6 +28,11 @@ pub trait SceneSource: Sync {
     /// If the scene cannot be labelled at all. What costs less stands in `refused` of the scene.
     fn load(&self, scene: &str) -> Result<Scene, Fault>;
 
+    /// How many points the sweeps of a scene hold, at most, without reading them all: counted where
+    /// files tell, else estimated with room to spare. A sweep that cannot be looked at counts as
+    /// empty: reading it will tell what is wrong.
+    fn scene_points(&self, scene: &Scene) -> u64;
+
     /// The points of a sweep, in the frame of its lidar.
     ///
     /// # Errors

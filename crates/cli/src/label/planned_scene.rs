@@ -9,9 +9,7 @@ use occlabel_pipeline::MemoryModel;
 
 use crate::label::Job;
 use crate::label::findings::Findings;
-
-/// The fewest bytes of a point in a sweep's file, to tell points from sizes.
-const BYTES_A_POINT: u64 = 16;
+use crate::lacks::lacks;
 
 /// What a ray costs, all stages included: measured with the preset `precise` on 32-beam scenes of 40
 /// keyframes.
@@ -31,6 +29,8 @@ pub(crate) struct PlannedScene {
     /// An upper estimate of the memory that takes.
     memory_bytes: u64,
     sweeps: usize,
+    /// An upper estimate of its points.
+    points: u64,
 }
 
 /// Why a scene cannot be labelled.
@@ -57,13 +57,13 @@ impl PlannedScene {
         }
         job.opened.rules.check_labels(&scene).map_err(Refused::Configuration)?;
         scene.warnings.iter().for_each(|fault| findings.warn(job.console, name, fault));
-        if !scene.has_point_labels() {
-            findings.warn(job.console, name, &no_labels(job));
+        for lack in lacks(&scene, &job.opened.config) {
+            findings.warn(job.console, name, &lack);
         }
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
-        let points = inventory.present_bytes() / BYTES_A_POINT;
+        let points = job.opened.source.scene_points(&scene);
         let model = MemoryModel::new(points, &job.opened.rules.spec);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
@@ -74,13 +74,14 @@ impl PlannedScene {
             memory_bytes: model.bytes(at_once.0, at_once.1),
             files: inventory.present,
             sweeps: scene.sweeps.len(),
+            points,
         }))
     }
 
     /// One line for `--dry-run`.
     pub(crate) fn line(&self) -> String {
         let bytes: u64 = self.files.iter().map(|(_, bytes)| bytes).sum();
-        let (keyframes, points) = (self.wanted.len(), bytes / BYTES_A_POINT);
+        let (keyframes, points) = (self.wanted.len(), self.points);
         let rays = points * keyframes as u64;
         let seconds = rays as f64 * CPU_SECONDS_A_RAY;
         format!(
@@ -102,13 +103,6 @@ fn chosen_keyframes(job: &Job, scene: &Scene, tokens: &mut BTreeSet<&str>) -> BT
     let all = job.args.keyframes.is_empty();
     let is_chosen = |keyframe: &&Keyframe| tokens.remove(keyframe.token.as_str()) || all;
     scene.keyframes.iter().filter(is_chosen).map(|keyframe| keyframe.token.clone()).collect()
-}
-
-/// What becomes of background in a scene without point labels.
-fn no_labels(job: &Job) -> Fault {
-    let class = &job.opened.config.relabel.unknown_class;
-    let found = format!("none: what no box covers becomes `{class}`");
-    Fault::new("no-labels", "point labels", "labels on some sweeps", found)
 }
 
 /// Records that the reader refused.

@@ -1,12 +1,9 @@
 //! The two lidars of the roof, one upside down below the other, and which points are whose.
 
-use std::path::Path;
-
 use nalgebra::Point3;
 use occlabel_core::{Fault, Pose};
 
-use super::poses::poses;
-use super::table::Table;
+use super::poses::Mountings;
 
 /// Beams of a lidar: lasers 0 to 31 are of one, 32 to 63 of the other.
 const BEAMS: usize = 32;
@@ -19,19 +16,13 @@ pub(super) struct Lidars {
 }
 
 impl Lidars {
-    /// Reads them from the log's calibration.
+    /// Finds them among the mountings of all sensors.
     ///
     /// # Errors
-    /// If the file cannot be used, or does not name both.
-    pub(super) fn read(root: &Path, file: &str) -> Result<Self, Fault> {
-        let table = Table::read(root, file)?;
-        let (names, poses) = (table.texts("sensor_name")?, poses(&table)?);
-        let mounting = |name: &str| {
-            let pose = names.iter().zip(&poses).find(|(known, _)| *known == name);
-            let pose = pose.map_or_else(|| Err("none".into()), |(_, pose)| pose.clone());
-            pose.map_err(|found| Fault::new("av2-lidar", file, format!("a pose of {name}"), found))
-        };
-        Ok(Self { ego_from_up: mounting("up_lidar")?, ego_from_down: mounting("down_lidar")? })
+    /// If one is not there.
+    pub(super) fn of(mountings: &Mountings) -> Result<Self, Fault> {
+        let pose = |name| mountings.pose(name);
+        Ok(Self { ego_from_up: pose("up_lidar")?, ego_from_down: pose("down_lidar")? })
     }
 
     /// Whether lasers 0 to 31 are `up_lidar`'s, as the format does not say: a beam's elevation is

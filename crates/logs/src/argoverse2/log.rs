@@ -8,6 +8,7 @@ use occlabel_core::{Fault, PointCloud, PointLabel, Scene, SweepHeader};
 
 use super::format_defaults;
 use super::lidars::{Lidars, are_lasers, is_first};
+use super::poses::Mountings;
 use super::scene::{MOUNTINGS, TABLES, build_scene, is_log};
 use super::table::Table;
 use crate::files::unreadable;
@@ -69,11 +70,15 @@ impl SceneSource for Argoverse2Log {
         }
     }
 
+    fn scene_points(&self, scene: &Scene) -> u64 {
+        scene.sweeps.iter().map(|sweep| Table::rows(&self.root, &sweep.file).unwrap_or(0)).sum()
+    }
+
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
         let scene = sweep.source_id.split('/').next().unwrap_or_default();
         let folder = self.folders.iter().find(|(name, _)| name == scene);
         let folder = folder.map_or("", |(_, folder)| folder);
-        let lidars = Lidars::read(&self.root, &format!("{folder}{MOUNTINGS}"))?;
+        let lidars = Lidars::of(&Mountings::read(&self.root, format!("{folder}{MOUNTINGS}"))?)?;
         let cloud = read_cloud(&self.root, sweep, &lidars)?;
         let empty = || Fault::new("sweep-empty", &sweep.file, "points", "none");
         let warnings = cloud.is_empty().then(empty).into_iter().collect();

@@ -3,6 +3,10 @@
 //! docs/argoverse2.md names every file that is read.
 
 #[cfg(feature = "av2")]
+mod cameras;
+#[cfg(feature = "av2")]
+mod feather;
+#[cfg(feature = "av2")]
 mod lidars;
 #[cfg(feature = "av2")]
 mod log;
@@ -12,6 +16,8 @@ mod poses;
 mod scene;
 #[cfg(feature = "av2")]
 mod table;
+#[cfg(feature = "av2")]
+mod times;
 #[cfg(feature = "av2")]
 mod tracks;
 #[cfg(not(feature = "av2"))]

@@ -1,18 +1,19 @@
 //! A scene from its log: the reader's conductor.
 
-use std::collections::{BTreeSet, HashMap};
-use std::fs;
+use std::collections::HashMap;
 use std::path::Path;
 
 use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader, Timestamp};
 
 use super::LIDAR;
+use super::cameras::{LENSES, read_cameras};
 use super::lidars::Lidars;
-use super::poses::poses;
+use super::poses::{Mountings, poses};
 use super::table::Table;
+use super::times::file_times;
 use super::tracks::read_tracks;
 use crate::ReadOptions;
-use crate::files::{is_folder_name, unreadable};
+use crate::files::is_folder_name;
 use crate::keyframes::keyframes;
 use crate::notes::Notes;
 
@@ -26,7 +27,7 @@ pub(super) const MOUNTINGS: &str = "calibration/egovehicle_SE3_sensor.feather";
 const SWEEPS: &str = "sensors/lidar/";
 
 /// The files of a log that are no sweep's.
-pub(super) const TABLES: [&str; 3] = [POSES, BOXES, MOUNTINGS];
+pub(super) const TABLES: [&str; 4] = [POSES, BOXES, MOUNTINGS, LENSES];
 
 /// Whether a folder is a log.
 pub(super) fn is_log(folder: &Path) -> bool {
@@ -48,7 +49,8 @@ pub(super) fn build_scene(
         return Err(Fault::new("scene-name", name, expected, format!("`{name}`")));
     }
     let mut notes = Notes::default();
-    let lidars = Lidars::read(root, &format!("{folder}{MOUNTINGS}"))?;
+    let mountings = Mountings::read(root, format!("{folder}{MOUNTINGS}"))?;
+    let lidars = Lidars::of(&mountings)?;
     let ego_poses = ego_poses(root, &format!("{folder}{POSES}"), &mut notes)?;
     let boxes = format!("{folder}{BOXES}");
     let (tracks, annotated) = match root.join(&boxes).is_file() {
@@ -56,14 +58,15 @@ pub(super) fn build_scene(
         false => Default::default(),
     };
     let mut sweeps = Vec::new();
-    for time_ns in sweep_times(root, folder)? {
+    for time_ns in file_times(root, &format!("{folder}{SWEEPS}"), &[".feather"])? {
         let header = sweep_header(name, folder, time_ns, &lidars, &ego_poses);
         sweeps.extend(notes.accept(Loss::Keyframe, header));
     }
     let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
-    let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &[])?;
+    let (cameras, exposures) = read_cameras((root, folder), &mountings, &ego_poses, &mut notes)?;
+    let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &exposures)?;
     let (warnings, refused) = notes.finish();
-    let (name, cameras) = (name.to_owned(), Vec::new());
+    let name = name.to_owned();
     Ok(Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused })
 }
 
@@ -82,19 +85,6 @@ fn ego_poses(root: &Path, file: &str, notes: &mut Notes) -> Result<HashMap<i64, 
         }
     }
     Ok(by_time)
-}
-
-/// The times of the sweeps that are there, nanoseconds: their files are named so.
-fn sweep_times(root: &Path, folder: &str) -> Result<BTreeSet<i64>, Fault> {
-    let place = format!("{folder}{SWEEPS}");
-    let mut times = BTreeSet::new();
-    for entry in fs::read_dir(root.join(&place)).map_err(|error| unreadable(&place, &error))? {
-        let name = entry.map_err(|error| unreadable(&place, &error))?.file_name();
-        let number = name.to_str().and_then(|name| name.strip_suffix(".feather"));
-        let time = number.and_then(|number| number.parse::<i64>().ok());
-        times.extend(time.filter(|time| number == Some(time.to_string().as_str())));
-    }
-    Ok(times)
 }
 
 fn sweep_header(

@@ -1,4 +1,4 @@
-//! A Feather file (Arrow IPC) as columns.
+//! A Feather file as columns.
 
 use std::path::Path;
 
@@ -8,19 +8,11 @@ use arrow_array::types::{
     UInt64Type,
 };
 use arrow_array::{Array, RecordBatch};
-use arrow_buffer::Buffer;
-use arrow_ipc::convert::try_fb_to_schema;
-use arrow_ipc::reader::FileDecoder;
-use arrow_ipc::{Block, root_as_footer, root_as_message};
 use arrow_schema::DataType;
 use occlabel_core::Fault;
 
+use super::feather::Feather;
 use crate::files::read_file;
-
-/// A file unpacks to at most so many bytes.
-const MAX_BYTES: u64 = 1 << 30;
-/// What an Arrow file ends with, after the footer's length.
-const MAGIC: &[u8] = b"ARROW1";
 
 /// The rows of a file.
 pub(super) struct Table {
@@ -34,9 +26,18 @@ impl Table {
     /// # Errors
     /// If it is absent, no sound Arrow file, or unpacks to more than 1 GiB.
     pub(super) fn read(root: &Path, file: &str) -> Result<Self, Fault> {
-        let bytes = read_file(root, file)?;
-        let batches = batches(bytes).map_err(|found| fault(file, "a sound Arrow file", found))?;
+        let feather = Feather::open(read_file(root, file)?);
+        let batches = feather.and_then(Feather::unpack).map_err(|found| unsound(file, found))?;
         Ok(Self { file: file.to_owned(), batches })
+    }
+
+    /// How many rows a file of the log says that it has; they are not unpacked for it.
+    ///
+    /// # Errors
+    /// If it is absent, or no sound Arrow file.
+    pub(super) fn rows(root: &Path, file: &str) -> Result<u64, Fault> {
+        let feather = Feather::open(read_file(root, file)?);
+        feather.and_then(|feather| feather.rows()).map_err(|found| unsound(file, found))
     }
 
     /// A column of numbers of any type.
@@ -72,6 +73,10 @@ impl Table {
         }
         Ok(values)
     }
+}
+
+fn unsound(file: &str, found: String) -> Fault {
+    fault(file, "a sound Arrow file", found)
 }
 
 fn fault(file: &str, expected: &str, found: impl Into<String>) -> Fault {
@@ -117,67 +122,4 @@ fn texts(column: &dyn Array) -> Option<Vec<String>> {
         DataType::LargeUtf8 => column.as_string::<i64>().iter().map(owned).collect(),
         _ => None,
     }
-}
-
-/// The batches of a file in memory. No size that it declares is believed before it is checked.
-fn batches(bytes: Vec<u8>) -> Result<Vec<RecordBatch>, String> {
-    let length = bytes.len();
-    let tail = bytes.last_chunk::<10>().filter(|tail| tail.ends_with(MAGIC)).ok_or("no footer")?;
-    let footer_length = u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]) as usize;
-    let start = (length - 10).checked_sub(footer_length).ok_or("a footer beyond the file")?;
-    let footer = bytes[start..length - 10].to_vec();
-    let footer = root_as_footer(&footer).map_err(|error| error.to_string())?;
-    let schema = footer.schema().ok_or("no schema")?;
-    let schema = try_fb_to_schema(schema).map_err(|error| error.to_string())?;
-    if let Some(field) = schema.fields().iter().find(|field| field.data_type().is_nested()) {
-        return Err(format!("a nested column `{}`", field.name()));
-    }
-    if footer.dictionaries().is_some_and(|list| !list.is_empty()) {
-        return Err("dictionaries".into());
-    }
-    let decoder = FileDecoder::new(schema.into(), footer.version());
-    let buffer = Buffer::from_vec(bytes);
-    let mut left = MAX_BYTES;
-    let mut batches = Vec::new();
-    for block in footer.recordBatches().ok_or("no batches")? {
-        let (from, size) = block_span(block, start)?;
-        let data = buffer.slice_with_length(from, size);
-        left = left.checked_sub(unpacked(&data, block)?).ok_or("more than 1 GiB")?;
-        let batch = decoder.read_record_batch(block, &data).map_err(|error| error.to_string())?;
-        batches.extend(batch);
-    }
-    Ok(batches)
-}
-
-/// Where a block begins, and its bytes.
-fn block_span(block: &Block, end: usize) -> Result<(usize, usize), String> {
-    let whole = |number: i64| usize::try_from(number).ok();
-    let head = whole(block.metaDataLength().into());
-    let size = head.zip(whole(block.bodyLength())).and_then(|(head, body)| head.checked_add(body));
-    let span = whole(block.offset()).zip(size);
-    let inside =
-        |(from, size): &(usize, usize)| from.checked_add(*size).is_some_and(|to| to <= end);
-    span.filter(inside).ok_or_else(|| "a block beyond the file".into())
-}
-
-/// How many bytes the buffers of a block say that they unpack to, each of them within the block.
-fn unpacked(data: &[u8], block: &Block) -> Result<u64, String> {
-    let head = &data[..block.metaDataLength() as usize];
-    let skip = if head.starts_with(&[0xff; 4]) { 8 } else { 4 };
-    let message = head.get(skip..).ok_or("a block without a message")?;
-    let message = root_as_message(message).map_err(|error| error.to_string())?;
-    let batch = message.header_as_record_batch().ok_or("a block that is no batch")?;
-    let body = &data[head.len()..];
-    let mut total = batch.length().unsigned_abs();
-    for buffer in batch.buffers().into_iter().flatten() {
-        let number = |number: i64| usize::try_from(number).ok();
-        let span = number(buffer.offset()).zip(number(buffer.length()));
-        let part = span.and_then(|(at, length)| body.get(at..)?.get(..length));
-        let part = part.ok_or("a buffer beyond its block")?;
-        let declared = part.first_chunk().map(|size| i64::from_le_bytes(*size));
-        // Minus 1 says that the buffer is not packed.
-        let declared = declared.filter(|_| batch.compression().is_some());
-        total = total.saturating_add(declared.map_or(0, |size| size.max(0).unsigned_abs()));
-    }
-    Ok(total)
 }

@@ -44,6 +44,10 @@ impl SceneSource for Argoverse2Log {
         match *self {}
     }
 
+    fn scene_points(&self, _: &Scene) -> u64 {
+        match *self {}
+    }
+
     fn read_sweep(&self, _: &SweepHeader) -> Result<SweepPoints, Fault> {
         match *self {}
     }

@@ -128,6 +128,12 @@ impl SceneSource for McapLog {
         }
     }
 
+    fn scene_points(&self, scene: &Scene) -> u64 {
+        let known = self.scenes.iter().find(|known| known.name == scene.name);
+        let loaded = known.and_then(|known| self.loaded(known).as_ref().ok());
+        loaded.map_or(0, Loaded::points)
+    }
+
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
         let known = self.scenes.iter().find(|scene| scene.file == sweep.file);
         let unknown = || {

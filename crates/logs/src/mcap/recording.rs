@@ -44,6 +44,7 @@ pub(super) struct CloudHead {
     pub(super) pose: RawPose,
     /// Names of the points' numbers.
     pub(super) fields: Vec<String>,
+    pub(super) points: u64,
     /// Of all its bytes.
     pub(super) digest: Hash,
 }
@@ -56,6 +57,7 @@ impl CloudHead {
             topic: message.channel.topic.clone(),
             header: cloud.header,
             pose: cloud.pose,
+            points: (cloud.data.len() / cloud.point_step.max(1)) as u64,
             fields: cloud.fields.into_iter().map(|field| field.name).collect(),
             digest: blake3::hash(&message.data),
         }

@@ -64,6 +64,11 @@ impl Loaded {
         self.scene.clone()
     }
 
+    /// How many points its clouds hold.
+    pub(super) fn points(&self) -> u64 {
+        self.recording.clouds.iter().map(|cloud| cloud.points).sum()
+    }
+
     /// The points of a sweep; `None` if it is none of this file.
     ///
     /// # Errors

@@ -30,6 +30,7 @@ use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 
+use crate::files::file_bytes;
 use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
 pub use pose::QuaternionOrder;
@@ -117,6 +118,12 @@ impl SceneSource for NuScenesLog {
                 Err(Fault::new("scene-unknown", "scene.json", format!("a scene `{scene}`"), "none"))
             }
         }
+    }
+
+    fn scene_points(&self, scene: &Scene) -> u64 {
+        let point_bytes = self.options.columns.unwrap_or(PointColumns::Five).bytes() as u64;
+        let points = |sweep: &SweepHeader| file_bytes(&self.root, &sweep.file) / point_bytes;
+        scene.sweeps.iter().map(points).sum()
     }
 
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {

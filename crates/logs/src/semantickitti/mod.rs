@@ -12,12 +12,13 @@ use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
 
-use crate::files::read_file;
+use crate::files::{file_bytes, read_file};
 use crate::names::{nearest_names, quoted};
+use crate::point_names::{PointNames, decode_labels};
 use crate::points::decode_points;
 use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
-use classes::decode_labels;
+use classes::label_name;
 use sequences::{Sequence, label_file, sequences};
 
 /// The name of the only lidar.
@@ -61,7 +62,8 @@ impl SemanticKittiLog {
     ) -> Result<(Vec<PointLabel>, Option<Fault>), Fault> {
         match label_file(sweep) {
             Some(file) if sweep.labelled => {
-                decode_labels(&read_file(&self.root, &file)?, &file, count, &self.options)
+                let raw = decode_labels(&read_file(&self.root, &file)?, &file, count)?;
+                PointNames { options: &self.options, name: label_name }.labels(&raw, &file)
             }
             _ => Ok((vec![PointLabel::Unlabelled; count], None)),
         }
@@ -88,6 +90,12 @@ impl SceneSource for SemanticKittiLog {
             Some(sequence) => scene::build_scene(&self.root, &self.options, sequence),
             None => Err(Fault::new("scene-unknown", scene, "a sequence of this log", "none")),
         }
+    }
+
+    fn scene_points(&self, scene: &Scene) -> u64 {
+        let point_bytes = PointColumns::Four.bytes() as u64;
+        let points = |sweep: &SweepHeader| file_bytes(&self.root, &sweep.file) / point_bytes;
+        scene.sweeps.iter().map(points).sum()
     }
 
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {

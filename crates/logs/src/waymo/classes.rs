@@ -7,6 +7,8 @@ use occlabel_core::{Fault, PointLabel};
 use super::segment::Place;
 use crate::ReadOptions;
 
+/// Nobody labelled the point: whatever the taxonomy says, it is of no class.
+const UNDEFINED: i32 = 0;
 /// Names of point classes by number: `Segmentation.Type` without its `TYPE_`.
 const POINT_CLASSES: [&str; 23] = [
     "UNDEFINED",
@@ -61,6 +63,9 @@ impl<'a> PointClasses<'a> {
 
     /// What a raw class means; nobody labelled a point whose class means nothing.
     pub(super) fn label(&mut self, raw: i32) -> PointLabel {
+        if raw == UNDEFINED {
+            return PointLabel::Unlabelled;
+        }
         let (label, count, _) = self.seen.entry(raw).or_insert_with(|| {
             let name = name(&POINT_CLASSES, raw.into());
             let label = self.options.point_label(&name).unwrap_or(PointLabel::Unlabelled);
@@ -86,5 +91,38 @@ impl<'a> PointClasses<'a> {
         let expected = "point classes that the taxonomy names";
         let fault = place.fault("unknown-label", expected, found.join(", "));
         self.options.unknown(fault).map(Some)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use occlabel_core::{ClassId, KeyframeSettings, KeyframeSource, Taxonomy};
+
+    use super::*;
+
+    fn options() -> ReadOptions {
+        let taxonomy: Taxonomy =
+            toml::from_str(include_str!("../../../../configs/taxonomies/occ3d-waymo.toml"))
+                .expect("a taxonomy");
+        let keyframes = KeyframeSettings {
+            source: KeyframeSource::Annotated,
+            stride: 1,
+            reference_lidar: "auto".into(),
+        };
+        let taxonomy = Arc::new(taxonomy);
+        ReadOptions { scenes: None, taxonomy, keyframes, unknown_as: None }
+    }
+
+    #[test]
+    fn fault_28_an_undefined_point_is_unlabelled_though_the_taxonomy_has_a_class_for_it() {
+        let options = options();
+        assert!(options.point_label("UNDEFINED").is_some());
+        let mut classes = PointClasses::new(&options);
+        assert_eq!(classes.label(0), PointLabel::Unlabelled);
+        assert_eq!(classes.label(18), PointLabel::Class(ClassId(13)));
+        let place = Place { file: "f".into(), record: "r".into(), offset: None };
+        assert_eq!(classes.finish(&place), Ok(None));
     }
 }

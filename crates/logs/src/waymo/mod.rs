@@ -32,6 +32,7 @@ use std::slice;
 use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, SweepHeader};
 
 use crate::names::{nearest_names, quoted};
+use crate::sampled_points::sampled_points;
 use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
 use classes::PointClasses;
@@ -119,6 +120,10 @@ impl SceneSource for WaymoLog {
             Some(segment) => scene::build_scene(&self.options, scene, segment?),
             None => Err(Fault::new("scene-unknown", scene, "a segment of this log", "none")),
         }
+    }
+
+    fn scene_points(&self, scene: &Scene) -> u64 {
+        sampled_points(self, scene)
     }
 
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {

@@ -45,6 +45,8 @@ fn ros2_cdr_gives_sweeps_poses_and_optics() {
         let off = (in_map - point(&told["mean_in_map"])).norm();
         assert!(off < 1e-6, "{off}");
     }
+    let points: u64 = sweeps.iter().filter_map(|told| told["points"].as_u64()).sum();
+    assert_eq!(log.scene_points(&scene), points);
     let camera = &scene.cameras[0].camera;
     assert_eq!((camera.width, camera.height, camera.model.name()), (1242, 375, "pinhole"));
     let matrix = camera.model.intrinsics().unwrap().matrix();

@@ -1,0 +1,131 @@
+//! How fast logs are read, next to reading their bytes and doing nothing with them: opening a log,
+//! loading its scenes, decoding all their sweeps.
+//!
+//! ```text
+//! cargo bench --bench reading                    a simulated street in each format that is written
+//! cargo bench --bench reading -- FORMAT DIR      a log of your own
+//! ```
+//!
+//! One thread; files were just written or read once before, so that disks do not count. Bytes are
+//! those of the scenes' files, packed as they are.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::hint::black_box;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use occlabel_core::{KeyframeSettings, KeyframeSource, McapSettings};
+use occlabel_logs::{
+    Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions,
+    QuaternionOrder, ReadOptions, SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
+};
+use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
+
+/// Formats that `occlabel simulate` writes.
+const WRITTEN: [&str; 3] = ["nuscenes", "mcap", "semantickitti"];
+/// A street of a few seconds: enough points to time.
+const SHORTER: [&str; 4] = ["--set", "duration_s=6", "--images", "none"];
+
+fn main() {
+    let args: Vec<String> = std::env::args().skip(1).filter(|arg| arg != "--bench").collect();
+    println!("format            MB   points    plain MB/s   read MB/s   ratio   Mpoints/s");
+    match args.as_slice() {
+        [format, root] => measure(format, Path::new(root)),
+        _ => WRITTEN.into_iter().for_each(simulated),
+    }
+}
+
+fn simulated(format: &str) {
+    let folder = tempfile::tempdir().expect("a folder for the log");
+    let log = folder.path().join("log");
+    let line = ["occlabel", "simulate", "--quiet", "--world", "street", "--format", format];
+    let output = ["--output", log.to_str().expect("UTF-8")];
+    let line = [&line[..], &output, &SHORTER].concat();
+    assert!(occlabel_cli::run(line) == std::process::ExitCode::SUCCESS, "no log was written");
+    measure(format, &log);
+}
+
+fn measure(format: &str, root: &Path) {
+    let points = read(format, root).0;
+    let (files, bytes) = plain(root, &read(format, root).1);
+    let begun = Instant::now();
+    plain(root, &files);
+    let plain_s = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
+    black_box(read(format, root));
+    let read_s = begun.elapsed().as_secs_f64();
+    let megabytes = bytes as f64 / 1e6;
+    println!(
+        "{format:<14} {megabytes:>6.1} {points:>9} {:>12.0} {:>11.0} {:>7.3} {:>11.2}",
+        megabytes / plain_s,
+        megabytes / read_s,
+        plain_s / read_s,
+        points as f64 / 1e6 / read_s
+    );
+}
+
+/// Reads all files whole, one after the other; and how many bytes they have.
+fn plain(root: &Path, files: &BTreeSet<String>) -> (BTreeSet<String>, u64) {
+    let bytes = |file: &String| black_box(fs::read(root.join(file)).expect("a file")).len() as u64;
+    (files.clone(), files.iter().map(bytes).sum())
+}
+
+/// Reads a log to the last point: how many there are, and all files that it took.
+fn read(format: &str, root: &Path) -> (usize, BTreeSet<String>) {
+    let source = open(format, root);
+    let mut files: BTreeSet<String> = source.tables().into_iter().collect();
+    let mut points = 0;
+    for name in source.scene_names() {
+        for sweep in source.load(&name).expect("a scene").sweeps {
+            points += black_box(source.read_sweep(&sweep).expect("a sweep")).cloud.len();
+            files.extend(source.sweep_files(&sweep));
+        }
+    }
+    (points, files)
+}
+
+fn open(format: &str, root: &Path) -> Box<dyn SceneSource> {
+    match format {
+        "nuscenes" => {
+            let options = NuScenesOptions {
+                read: options("occ3d-nuscenes"),
+                version: None,
+                quaternion_order: QuaternionOrder::Wxyz,
+                columns: None,
+            };
+            Box::new(NuScenesLog::open(root, options).expect("a log"))
+        }
+        "mcap" => {
+            let options = McapOptions {
+                read: options("occ3d-nuscenes"),
+                settings: McapSettings::default(),
+                time_source: TimeSource::Header,
+                recover: false,
+            };
+            Box::new(McapLog::open(root, options).expect("a log"))
+        }
+        "semantickitti" if Kitti360Log::is_log(root) => {
+            Box::new(Kitti360Log::open(root, options(format)).expect("a log"))
+        }
+        "semantickitti" => Box::new(SemanticKittiLog::open(root, options(format)).expect("a log")),
+        "waymo" => Box::new(WaymoLog::open(root, options("occ3d-waymo")).expect("a log")),
+        "av2" => Box::new(Argoverse2Log::open(root, options("argoverse2")).expect("a log")),
+        other => panic!("no format `{other}`"),
+    }
+}
+
+fn options(taxonomy: &str) -> ReadOptions {
+    let text = shipped_taxonomy(taxonomy).expect("a shipped taxonomy");
+    ReadOptions {
+        scenes: None,
+        taxonomy: Arc::new(parse_taxonomy(text, taxonomy).expect("a taxonomy")),
+        keyframes: KeyframeSettings {
+            source: KeyframeSource::Annotated,
+            stride: 1,
+            reference_lidar: "auto".into(),
+        },
+        unknown_as: Some(occlabel_core::ClassId(0)),
+    }
+}

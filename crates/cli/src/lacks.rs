@@ -1,0 +1,48 @@
+//! What a scene does not have, and what that makes of its labels.
+
+use std::collections::BTreeSet;
+
+use occlabel_core::{Fault, Scene};
+use occlabel_pipeline::Config;
+
+/// A word about each kind of record that a scene goes without: none of them keeps it from being
+/// labelled.
+pub(crate) fn lacks(scene: &Scene, config: &Config) -> Vec<Fault> {
+    let lacks = [no_labels(scene, config), few_boxes(scene, config), no_exposures(scene)];
+    lacks.into_iter().flatten().collect()
+}
+
+fn no_labels(scene: &Scene, config: &Config) -> Option<Fault> {
+    let class = &config.relabel.unknown_class;
+    let found = format!("none: what no box covers becomes `{class}`");
+    let fault = Fault::new("no-labels", "point labels", "labels on some sweeps", found);
+    (!scene.has_point_labels()).then_some(fault)
+}
+
+fn few_boxes(scene: &Scene, config: &Config) -> Option<Fault> {
+    let times: BTreeSet<_> =
+        scene.tracks.iter().flat_map(|track| &track.boxes).map(|(time, _)| time).collect();
+    let expected = "boxes of tracks at several times";
+    match times.len() {
+        0 => {
+            let found = "none: what moves stays where each sweep saw it";
+            let fault = Fault::new("no-boxes", "boxes", expected, found);
+            Some(fault.hint(
+                "aggregate.window_s shortens trails, states.conflict = \"ratio\" clears them",
+            ))
+        }
+        1 if scene.sweeps.len() > 1 => {
+            let span_s = config.boxes.extrapolate_s;
+            let found =
+                format!("one: they serve the sweeps within {span_s} s (boxes.extrapolate_s)");
+            Some(Fault::new("boxes-at-one-time", "boxes", expected, found))
+        }
+        _ => None,
+    }
+}
+
+fn no_exposures(scene: &Scene) -> Option<Fault> {
+    let saw_nothing = scene.keyframes.iter().all(|keyframe| keyframe.exposures.is_empty());
+    let found = "none at any keyframe: mask_camera is all 0";
+    saw_nothing.then(|| Fault::new("no-cameras", "cameras", "exposures of cameras", found))
+}
