@@ -32,6 +32,7 @@ mod options;
 mod points;
 mod semantickitti;
 mod source;
+mod tracks;
 mod transform;
 mod waymo;
 mod wire;
