@@ -35,6 +35,7 @@ mod points;
 mod sampled_points;
 mod semantickitti;
 mod source;
+mod tracks;
 mod transform;
 mod waymo;
 mod wire;

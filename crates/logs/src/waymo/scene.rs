@@ -38,7 +38,7 @@ pub(super) fn build_scene(
     let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
     let mut keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &[])?;
     expose(&mut keyframes, &frames, &cameras, &mut notes);
-    let tracks = scene_tracks(options, name, &frames, &mut notes)?;
+    let tracks = scene_tracks(options, &frames, &mut notes)?;
     let cameras = cameras.into_iter().map(|camera| camera.named).collect();
     let (warnings, refused) = notes.finish();
     Ok(Scene { name: name.to_owned(), sweeps, tracks, cameras, keyframes, warnings, refused })

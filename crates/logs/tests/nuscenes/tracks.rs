@@ -41,7 +41,7 @@ fn section_2_two_boxes_of_a_track_at_one_time_are_a_fault() {
     log.copy("sample_annotation", "a0", &[("token", json!("again"))]);
     let refusal = log.refusal();
     assert!(refusal.starts_with("sample_annotation.json (again, at byte "), "{refusal}");
-    assert!(refusal.contains("found `a0` at the same time"), "{refusal}");
+    assert!(refusal.contains("found two of `i0`"), "{refusal}");
 }
 
 #[test]

@@ -142,7 +142,7 @@ fn fault_23_a_box_without_size_pose_or_id_is_refused_alone() {
 fn section_2_two_boxes_of_a_track_in_a_frame_are_a_fault() {
     let again = first_changed(&[(6, 1), (4, 0)], |_| b"b-car".to_vec());
     let scene = load(&again).unwrap();
-    assert_eq!(lost(&scene), [(Loss::Annotation, "track-type")], "a walker is no car");
+    assert_eq!(lost(&scene), [(Loss::Annotation, "track-category")], "a walker is no car");
     let twice = first_changed(&[(6, 1)], |_| {
         let mut car = Vec::new();
         edit(&frames()[0], &[(6, 0)], &mut |bytes| {
