@@ -83,43 +83,45 @@ fn nuscenes_works_without_and_says_what_it_lacks() {
     assert_eq!(bare, ["no-labels", "no-boxes", "no-cameras"]);
 }
 
-/// A street with a car and a camera, written in a format.
+/// A street with a car and a camera.
+const WORLD: &str = r#"
+    name = "small"
+    duration_s = 0.6
+    seed = 1
+    taxonomy = "occ3d-nuscenes"
+    keyframe_hz = 5.0
+    ground.bands = [{ class = "flat.driveable_surface" }]
+    ego.trajectory.straight = { start = { x_m = 0.0, y_m = 0.0 }, speed_mps = 5.0 }
+    [[lidar]]
+    name = "LIDAR_TOP"
+    mounting.position_m = [0.9, 0.0, 1.84]
+    rate_hz = 10.0
+    max_range_m = 50.0
+    pattern.spinning = { azimuths = 360, beams.even = { count = 16, min_rad = -0.42, max_rad = 0.15 } }
+    [[camera]]
+    name = "CAM_FRONT"
+    mounting = { position_m = [1.7, 0.0, 1.5] }
+    width = 160
+    height = 90
+    rate_hz = 10.0
+    model.pinhole.matrix = [[130.0, 0.0, 80.0], [0.0, 130.0, 45.0], [0.0, 0.0, 1.0]]
+    [model.sedan]
+    category = "vehicle.car"
+    size_m = [4.6, 1.86, 1.44]
+    lift_m = 0.04
+    part = [{ shape.box.size_m = [4.56, 1.82, 1.4] }]
+    [[mover]]
+    name = "lead"
+    model = "sedan"
+    trajectory.straight = { start = { x_m = 12.0, y_m = -2.0 }, speed_mps = 5.0 }
+    [[static]]
+    class = "static.manmade"
+    pose = { position_m = [10.0, 9.0, 2.0] }
+    shape.box.size_m = [30.0, 1.0, 4.0]
+"#;
+
+/// That street, written in a format.
 fn simulated(format: &str) -> (TempDir, std::path::PathBuf) {
-    const WORLD: &str = r#"
-        name = "small"
-        duration_s = 0.6
-        seed = 1
-        taxonomy = "occ3d-nuscenes"
-        keyframe_hz = 5.0
-        ground.bands = [{ class = "flat.driveable_surface" }]
-        ego.trajectory.straight = { start = { x_m = 0.0, y_m = 0.0 }, speed_mps = 5.0 }
-        [[lidar]]
-        name = "LIDAR_TOP"
-        mounting.position_m = [0.9, 0.0, 1.84]
-        rate_hz = 10.0
-        max_range_m = 50.0
-        pattern.spinning = { azimuths = 360, beams.even = { count = 16, min_rad = -0.42, max_rad = 0.15 } }
-        [[camera]]
-        name = "CAM_FRONT"
-        mounting = { position_m = [1.7, 0.0, 1.5] }
-        width = 160
-        height = 90
-        rate_hz = 10.0
-        model.pinhole.matrix = [[130.0, 0.0, 80.0], [0.0, 130.0, 45.0], [0.0, 0.0, 1.0]]
-        [model.sedan]
-        category = "vehicle.car"
-        size_m = [4.6, 1.86, 1.44]
-        lift_m = 0.04
-        part = [{ shape.box.size_m = [4.56, 1.82, 1.4] }]
-        [[mover]]
-        name = "lead"
-        model = "sedan"
-        trajectory.straight = { start = { x_m = 12.0, y_m = -2.0 }, speed_mps = 5.0 }
-        [[static]]
-        class = "static.manmade"
-        pose = { position_m = [10.0, 9.0, 2.0] }
-        shape.box.size_m = [30.0, 1.0, 4.0]
-    "#;
     let folder = tempfile::tempdir().expect("a folder");
     let (world, log) = (folder.path().join("small.toml"), folder.path().join("log"));
     fs::write(&world, WORLD).expect("a world");
@@ -155,7 +157,7 @@ fn a_moving_class_may_be_ignored_where_there_are_no_boxes() {
     let (folder, log) = simulated("semantickitti");
     let occupied = |more: &[&str]| {
         let labels = folder.path().join(format!("labels-{}", more.len()));
-        label("semantickitti", &log, &labels, more).exits(0);
+        label("semantickitti", &log, &labels, &[more, &["--evidence"]].concat()).exits(0);
         let arrays = support::read_arrays(&labels, "00", "0").labels;
         arrays.semantics.values().iter().filter(|class| **class == 1).count()
     };

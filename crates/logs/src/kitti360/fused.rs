@@ -150,4 +150,22 @@ mod tests {
         ];
         assert!(broken.iter().all(|bytes| FusedLabels::read(bytes, "w").is_err()));
     }
+
+    #[test]
+    fn bent_files_are_read_or_refused() {
+        let sound = file(HEADER, &[([1.0; 3], 7), ([2.0; 3], 8)]);
+        let (mut read, mut refused) = (0, 0);
+        for at in 0..sound.len() {
+            for byte in [0, 0xff, b'9', b' ', b'\n'] {
+                let mut bent = sound.clone();
+                bent[at] = byte;
+                let cut = FusedLabels::read(&bent[..at], "w");
+                for labels in [FusedLabels::read(&bent, "w"), cut] {
+                    let count = if labels.is_ok() { &mut read } else { &mut refused };
+                    *count += 1;
+                }
+            }
+        }
+        assert!(read > 300 && refused > 600, "{read} read, {refused} refused");
+    }
 }
