@@ -253,3 +253,33 @@ fn memory_is_counted_in_points_not_in_packed_bytes() {
     assert!(points > 20_000 && memory > 64 * points, "{told}");
     plan(&["--memory", "1MB"]).exits(1).tells(&["expected a scene that fits", "bytes needed"]);
 }
+
+/// Two scans of a round of points on the road, in KITTI-360's layout, and nothing else.
+fn bare_kitti_360(root: &Path) {
+    let put = |file: &str, bytes: &[u8]| {
+        let path = root.join(file);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, bytes).expect("a file");
+    };
+    let points = (0..400).flat_map(|i| {
+        let (azimuth, range_m) = (i as f32 * 0.1, 4.0 + i as f32 * 0.02);
+        [range_m * azimuth.cos(), range_m * azimuth.sin(), -1.65, 0.5]
+    });
+    let points: Vec<u8> = points.flat_map(f32::to_le_bytes).collect();
+    let velodyne = "data_3d_raw/drive/velodyne_points";
+    put(&format!("{velodyne}/timestamps.txt"), b"2013-05-28 08:46:02.0\n2013-05-28 08:46:02.1\n");
+    (0..2).for_each(|frame| put(&format!("{velodyne}/data/{frame:010}.bin"), &points));
+    let poses = b"0 1 0 0 0 0 -1 0 0 0 0 -1 0\n1 1 0 0 1 0 -1 0 0 0 0 -1 0\n";
+    put("data_poses/drive/poses.txt", poses);
+    let camera = |number| format!("image_{number:02}: 0 0 1 0 1 0 0 0 0 1 0 -0.6\n");
+    let cameras: String = (0..4).map(camera).collect();
+    put("calibration/calib_cam_to_pose.txt", cameras.as_bytes());
+    put("calibration/calib_cam_to_velo.txt", b"0 0 1 0 -1 0 0 0 0 -1 0 -0.2\n");
+}
+
+#[test]
+fn kitti_360_works_without_and_says_what_it_lacks() {
+    let log = tempfile::tempdir().expect("a folder");
+    bare_kitti_360(log.path());
+    assert_eq!(lacks("semantickitti", log.path(), &[]), ["no-labels", "no-boxes", "no-cameras"]);
+}
