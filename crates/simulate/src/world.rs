@@ -117,9 +117,18 @@ fn table(text: &str) -> Result<Table, Fault> {
 fn read(table: Table) -> Result<WorldFile, Fault> {
     let table = with_models(table)?;
     serde_path_to_error::deserialize(table).map_err(|error| {
-        let message = error.inner().message().to_owned();
-        Fault::new("world", error.path().to_string(), "a world file's key and value", message)
+        let (expected, found) = told(error.inner().message());
+        Fault::new("world", error.path().to_string(), expected, found)
     })
+}
+
+/// What a reader of TOML expected, as far as it says so, and what it found.
+fn told(message: &str) -> (&str, &str) {
+    match message.split_once(", expected ") {
+        Some((found, expected)) if expected.starts_with("struct ") => ("a table", found),
+        Some((found, expected)) => (expected, found),
+        None => ("a world file's key and value", message),
+    }
 }
 
 fn build(file: WorldFile) -> Result<World, Fault> {
