@@ -157,7 +157,7 @@ fn bad_world_files_are_refused_by_their_key() {
         ("by = \"truck\"", "by = \"tank\"", "mover[2].towed.by"),
         ("begin_s = 0.2", "begin_s = -0.2", "mover[1].trajectory.turn.begin_s"),
         ("rate_hz = 12.0", "rate_hz = 0.0", "camera[0].rate_hz"),
-        ("rate_hz = 12.0", "rate_hz = 12.0\noffset_s = 2.05", "camera[0].offset_s"),
+        ("offset_s = 0.01", "offset_s = 2.05", "camera[0].offset_s"),
         ("dropout = 0.1", "dropout = 0.1\noffset_s = 99", "lidar[1].offset_s"),
         ("[[400.0, 0.0", "[[-400.0, 0.0", "camera[0].model"),
         ("count = 24", "count = 1", "lidar[0].pattern.spinning.beams.even.count"),
