@@ -77,7 +77,7 @@ fn precise_keeps_its_limits_where_the_published_rules_do_not() {
 }
 
 #[test]
-fn trees_of_sweeps_are_judged() {
+fn trees_of_sweeps_are_judged_and_quick_asks_no_limit_that_it_cannot() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (log, tree) = (folder.path().join("log"), folder.path().join("labels"));
     let simulate = ["simulate", "--world", "crossing", "--format", "nuscenes", "--images", "none"];
@@ -87,7 +87,12 @@ fn trees_of_sweeps_are_judged() {
     let more = ["--set", "taxonomy.file=occ3d-nuscenes", "--output", text(&tree)];
     occlabel(&[&label[..], &more].concat()).exits(0);
     let quality = ["quality", text(&tree), "--world-truth", text(&log), "--quick", "--json"];
-    let judged: Value = serde_json::from_str(&occlabel(&quality).exits(0).stdout).expect("JSON");
+    let limits = folder.path().join("limits.toml");
+    let camera = "[at_least]\noccupied_precision = 0.995\nmask_camera_iou = 0.97\n";
+    std::fs::write(&limits, camera).expect("a file");
+    let judged = occlabel(&[&quality[..], &["--limits", text(&limits)]].concat()).exits(0);
+    let judged = judged.tells(&["--quick leaves these limits unasked: mask_camera_iou"]);
+    let judged: Value = serde_json::from_str(&judged.stdout).expect("JSON");
     let tree = &judged["trees"][0];
     assert_eq!(tree["quality"]["keyframes"], 2, "every fifth of 8 sweeps");
     let (right, pure) = (figure(tree, "occupied_precision"), figure(tree, "free_purity"));
@@ -108,16 +113,6 @@ fn a_world_of_the_same_name_with_other_values_is_refused() {
         let ended = judge("street").exits(outcome);
         assert_eq!(ended.stderr.contains("the very world `street`"), outcome == 2, "{ended:?}");
     }
-}
-
-#[test]
-fn quick_asks_no_limit_that_it_cannot() {
-    let judged = Judged::new();
-    let (limits, precise) = (judged.place("limits.toml"), judged.place("precise"));
-    let camera = "[at_least]\noccupied_precision = 0.995\nmask_camera_iou = 0.97\n";
-    std::fs::write(&limits, camera).expect("a file");
-    let ended = judged.quality(&[&precise], &["--limits", text(&limits)]).exits(0);
-    ended.tells(&["--quick leaves these limits unasked: mask_camera_iou"]);
 }
 
 #[test]
