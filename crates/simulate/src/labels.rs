@@ -27,7 +27,7 @@ impl Labels {
         let label = |key: &str, raw: &str| match taxonomy.points.get(raw) {
             Some(Meaning::Class(class)) => Ok(PointLabel::Class(*class)),
             Some(Meaning::Ignore) => Ok(PointLabel::Ignored),
-            None => Err(unknown(key, "a point label of the taxonomy", raw)),
+            None => Err(unknown(key, "a point label of the taxonomy", taxonomy.points.keys(), raw)),
         };
         Ok(Self {
             ground: each("ground.bands", &world.ground.bands, |band| label("class", &band.class))?,
