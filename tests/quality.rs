@@ -5,7 +5,7 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use support::{Ended, occlabel, text};
+use support::{Ended, Label, occlabel, text};
 use tempfile::TempDir;
 
 /// What a second of `hill` has to reach with `precise`; all of docs/findings.md takes 20 s.
@@ -73,6 +73,45 @@ fn precise_keeps_its_limits_where_the_published_rules_do_not() {
     let (precise, paper) = (&both["trees"][0], &both["trees"][1]);
     for name in ["occupied_precision", "free_recall", "mask_lidar_iou"] {
         assert!(figure(precise, name) > figure(paper, name), "{name}: {precise} {paper}");
+    }
+}
+
+#[test]
+fn trees_of_sweeps_are_judged_and_quick_asks_no_limit_that_it_cannot() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (log, tree) = (folder.path().join("log"), folder.path().join("labels"));
+    let simulate = ["simulate", "--world", "crossing", "--format", "nuscenes", "--images", "none"];
+    let set = ["--set", "duration_s=0.4", "--output", text(&log)];
+    occlabel(&[&simulate[..], &set].concat()).exits(0);
+    let label = ["label", "--format", "nuscenes", "--input", text(&log), "--preset", "panommocc"];
+    let more = ["--set", "taxonomy.file=occ3d-nuscenes", "--output", text(&tree)];
+    occlabel(&[&label[..], &more].concat()).exits(0);
+    let quality = ["quality", text(&tree), "--world-truth", text(&log), "--quick", "--json"];
+    let limits = folder.path().join("limits.toml");
+    let camera = "[at_least]\noccupied_precision = 0.995\nmask_camera_iou = 0.97\n";
+    std::fs::write(&limits, camera).expect("a file");
+    let judged = occlabel(&[&quality[..], &["--limits", text(&limits)]].concat()).exits(0);
+    let judged = judged.tells(&["--quick leaves these limits unasked: mask_camera_iou"]);
+    let judged: Value = serde_json::from_str(&judged.stdout).expect("JSON");
+    let tree = &judged["trees"][0];
+    assert_eq!(tree["quality"]["keyframes"], 2, "every fifth of 8 sweeps");
+    let (right, pure) = (figure(tree, "occupied_precision"), figure(tree, "free_purity"));
+    assert!(right > 0.995 && pure > 0.98, "{right} {pure}");
+}
+
+#[test]
+fn a_world_of_the_same_name_with_other_values_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (name, set, outcome) in [("same", "seed=1", 0), ("other", "seed=2", 2)] {
+        let [log, tree] = ["log", "labels"].map(|kind| folder.path().join(name).join(kind));
+        let simulate = ["simulate", "--world", "street", "--format", "nuscenes", "--set", set];
+        occlabel(&[&simulate[..], &["--images", "none", "--output", text(&log)]].concat()).exits(0);
+        Label::new(&log, &tree).small().run().exits(0);
+        let judge =
+            |truth: &str| occlabel(&["quality", text(&tree), "--world-truth", truth, "--quick"]);
+        judge(text(&log)).exits(0);
+        let ended = judge("street").exits(outcome);
+        assert_eq!(ended.stderr.contains("the very world `street`"), outcome == 2, "{ended:?}");
     }
 }
 

@@ -4,7 +4,7 @@ mod support;
 
 use std::fs;
 
-use support::{Label, files_under, occlabel, text};
+use support::{Label, SMALL, files_under, occlabel, text};
 
 /// Few rays: these tests are not about points.
 const COARSE: [&str; 4] = ["--set", "lidar.*.pattern.spinning.azimuths=60", "--images", "none"];
@@ -50,6 +50,18 @@ fn the_other_formats_stand_under_their_own_names() {
         occlabel(&simulate(format, text(&log), &[])).exits(0);
         let files = files_under(&log);
         assert!(files.contains_key(file) && files.contains_key("truth/world.toml"), "{files:?}");
+    }
+}
+
+#[test]
+fn a_log_without_points_is_labelled_with_a_warning() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for format in ["semantickitti", "mcap"] {
+        let [log, labels] = ["log", "labels"].map(|kind| folder.path().join(format).join(kind));
+        let blind = ["--set", "lidar.*.max_range_m=0.1"];
+        occlabel(&simulate(format, text(&log), &blind)).exits(0);
+        let label = ["label", "--format", format, "--input", text(&log), "--output", text(&labels)];
+        occlabel(&[&label[..], &SMALL].concat()).exits(0).tells(&["points that count", "none"]);
     }
 }
 

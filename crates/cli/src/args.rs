@@ -154,7 +154,8 @@ pub(crate) struct QualityArgs {
     /// Label trees to judge by --world-truth; those of one grid share the work.
     #[arg(value_name = "DIR", requires = "world_truth", conflicts_with = "held_out")]
     pub(crate) trees: Vec<PathBuf>,
-    /// Judge by an exactly known world: a simulated log's folder, or a world file.
+    /// Judge by an exactly known world: a simulated log's folder, a world file, or a shipped
+    /// world's name.
     #[arg(long, value_name = "T", requires = "trees")]
     #[arg(conflicts_with_all = ["held_out", "LogArgs", "ConfigArgs", "range_noise_m"])]
     pub(crate) world_truth: Option<PathBuf>,

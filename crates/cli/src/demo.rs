@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use clap::Parser;
-use occlabel_core::Fault;
+use occlabel_core::{Fault, Palette};
 use occlabel_labels::{LabelTree, Manifest, TreePath, create_dir, read_labels, write_file};
 use occlabel_simulate::shipped_world;
-use occlabel_view::{BirdsEye, Orbit, Painted, Palette, birds_eye, perspective, png};
+use occlabel_view::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
 
 use crate::args::{Cli, DemoArgs};
 use crate::console::Console;

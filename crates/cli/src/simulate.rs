@@ -38,7 +38,11 @@ fn usage_or_failed(fault: Fault) -> Stop {
 /// Each scene's world, with its text: overrides applied, so that it can be built again from it.
 fn worlds(args: &SimulateArgs) -> Result<Vec<(String, World)>, Fault> {
     let (text, place) = world_text(&args.world)?;
-    let text = world_text_with(&text, &args.settings)?;
+    let in_file = |fault: Fault| {
+        let key = fault.record.clone().unwrap_or_else(|| fault.place.clone());
+        Fault { place: place.clone(), ..fault }.record(key)
+    };
+    let text = world_text_with(&text, &args.settings).map_err(in_file)?;
     let world = World::parse(&text, &place)?;
     if args.scenes == 1 {
         return Ok(vec![(text, world)]);
@@ -73,7 +77,8 @@ fn world_text(world: &str) -> Result<(String, String), Fault> {
 fn taxonomy(world: &World) -> Result<Taxonomy, Fault> {
     let name = &world.taxonomy;
     let text = shipped_taxonomy(name).ok_or_else(|| {
-        Fault::new("world", "taxonomy", "a shipped taxonomy", format!("`{name}`"))
+        Fault::new("world", &world.place, "a shipped taxonomy", format!("`{name}`"))
+            .record("taxonomy")
             .hint("`occlabel presets` lists them")
     })?;
     parse_taxonomy(text, name)

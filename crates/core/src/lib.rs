@@ -29,6 +29,7 @@ mod instant;
 mod keyframes;
 mod mcap_settings;
 mod occupancy;
+mod palette;
 mod pose;
 mod scene;
 mod taxonomy;
@@ -49,6 +50,7 @@ pub use instant::{Instant, PlacedObject, StandingBox};
 pub use keyframes::{KeyframeSettings, KeyframeSource, reference_lidar};
 pub use mcap_settings::McapSettings;
 pub use occupancy::{Evidence, OccupancyLabels, RayCounts, VoxelState, VoxelVote};
+pub use palette::Palette;
 pub use pose::{Pose, RigidMap, slerp};
 pub use scene::{
     Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, Refusal, Scene, Sweep, SweepHeader,

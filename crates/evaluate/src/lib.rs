@@ -56,6 +56,6 @@ pub mod held_out;
 mod world_truth;
 
 pub use world_truth::{
-    ClassQuality, Figures, JudgedLabels, KnownWorld, Limits, Miss, Quality, RINGS_M, RingQuality,
-    Scale, Tally, Value, WorstObject, judge,
+    COSTLY_FIGURES, ClassQuality, Figures, JudgedLabels, KnownWorld, Limits, Miss, Quality,
+    RINGS_M, RingQuality, Scale, Tally, Value, WorstObject, judge,
 };

@@ -92,6 +92,9 @@ pub struct SceneRecord {
     pub tracks: Vec<TrackRecord>,
     /// Tokens of the labelled keyframes, in order of time.
     pub keyframes: Vec<String>,
+    /// Of a simulated log: the hash of the world that the scene was driven in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub world: Option<String>,
 }
 
 /// A track of a scene.
@@ -246,8 +249,9 @@ pub(crate) mod tests {
     prop_compose! {
         fn scene()(cameras in prop::collection::vec(".*", 0..4),
                    tracks in prop::collection::vec(track(), 0..4),
-                   keyframes in prop::collection::vec("[a-f0-9]{4}", 0..4)) -> SceneRecord {
-            SceneRecord { cameras, tracks, keyframes }
+                   keyframes in prop::collection::vec("[a-f0-9]{4}", 0..4),
+                   world in proptest::option::of("[a-f0-9]{4}")) -> SceneRecord {
+            SceneRecord { cameras, tracks, keyframes, world }
         }
     }
 

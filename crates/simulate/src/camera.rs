@@ -24,7 +24,7 @@ pub struct CameraFile {
     height: u32,
     rate_hz: f64,
     #[serde(default)]
-    offset_s: f64,
+    pub(crate) offset_s: f64,
     #[serde(default)]
     body_mask: Vec<MaskPart>,
     rolling_shutter: Option<ShutterFile>,

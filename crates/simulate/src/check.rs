@@ -15,8 +15,15 @@ pub(crate) fn need(
     if holds { Ok(()) } else { Err(Fault::new("world", key, expected, found.to_string())) }
 }
 
-/// A raw name that the taxonomy lacks.
-pub(crate) fn unknown(key: &str, expected: &str, raw: &str) -> Fault {
+/// A raw name that the taxonomy lacks, with those that it has.
+pub(crate) fn unknown<'a>(
+    key: &str,
+    expected: &str,
+    known: impl Iterator<Item = &'a String>,
+    raw: &str,
+) -> Fault {
+    let known: Vec<&str> = known.map(String::as_str).collect();
+    let expected = format!("{expected}: {}", known.join(", "));
     Fault::new("world", key, expected, format!("`{raw}`"))
 }
 
@@ -38,6 +45,12 @@ pub(crate) fn lengths(key: &str, values: &[f64]) -> Result<(), Fault> {
 /// Refuses angles and rates that are not finite or above a million.
 pub(crate) fn angles(key: &str, values: &[f64]) -> Result<(), Fault> {
     values.iter().try_for_each(|&value| within(key, value, -1e6, 1e6))
+}
+
+/// The fault of a key, told of the file that it stands in.
+pub(crate) fn in_file(file: &str, fault: Fault) -> Fault {
+    let key = fault.place.clone();
+    Fault { place: file.to_owned(), ..fault }.record(key)
 }
 
 /// Puts the key of the table before the key that a fault names.

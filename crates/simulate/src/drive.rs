@@ -7,6 +7,7 @@ use occlabel_core::{
 };
 
 use crate::annotator::{Boxes, LabelledSweeps, LoggedPoses, Sightings};
+use crate::check::in_file;
 use crate::labels::Labels;
 use crate::lidar::{Lidar, Return};
 use crate::schedule::{
@@ -35,8 +36,13 @@ impl Drive {
     ///
     /// # Errors
     /// If the taxonomy does not know one of the world's raw names, or `keyframe_hz` is no whole
-    /// part of the reference lidar's rate: the fault's place is the key.
+    /// part of the reference lidar's rate: the fault's record is the key.
     pub fn new(world: World, taxonomy: &Taxonomy) -> Result<Self, Fault> {
+        let place = world.place.clone();
+        Self::through(world, taxonomy).map_err(|fault| in_file(&place, fault))
+    }
+
+    fn through(world: World, taxonomy: &Taxonomy) -> Result<Self, Fault> {
         let labels = Labels::new(&world, taxonomy)?;
         let sweeps = sweep_keys(&world);
         let keyframes = keyframe_keys(&world, &sweeps)?;
@@ -121,18 +127,26 @@ impl Drive {
         self.scene.sweeps.binary_search_by(known).ok()
     }
 
-    /// The scene's keyframe of that token. Every log of the drive names its keyframes so that the
-    /// token ends in their time in nanoseconds.
-    pub fn keyframe(&self, token: &str) -> Option<&Keyframe> {
+    /// The keyframe that a log of the drive names so: any sweep of the reference lidar can be one.
+    /// Tokens of keyframes and of sweeps end in their time in nanoseconds, in every format.
+    pub fn keyframe(&self, token: &str) -> Option<Keyframe> {
+        let time = Self::time_of(token)?;
+        let lidar = &self.scene.reference_sweep(self.scene.keyframes.first()?).lidar;
+        let is_it = |sweep: &SweepHeader| sweep.time == time && sweep.lidar == *lidar;
+        let key = self.sweeps[self.scene.sweeps.iter().position(is_it)?];
+        logged_keyframes(&self.world, &self.poses, &self.sweeps, &[key]).pop()
+    }
+
+    /// The time that a token of a keyframe or a sweep ends in.
+    pub fn time_of(token: &str) -> Option<Timestamp> {
         let digits =
             token.rfind(|c: char| !c.is_ascii_digit()).map_or(token, |at| &token[at + 1..]);
-        let time = Timestamp(digits.parse().ok()?);
-        self.scene.keyframes.iter().find(|keyframe| keyframe.time == time)
+        digits.parse().ok().map(Timestamp)
     }
 
     /// When a mover stands where an annotator without jitter draws its box at a keyframe: seconds.
     ///
-    /// For sweeps that are no keyframe of the scene: their own time.
+    /// At a sweep between annotated keyframes, where a box drawn straight between theirs stands.
     pub fn mover_time_s(&self, keyframe: &Keyframe, mover: usize) -> f64 {
         self.sightings.box_time(keyframe.time, mover).seconds_since(Timestamp(0))
     }

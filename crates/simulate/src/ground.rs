@@ -185,11 +185,11 @@ impl Ground {
         need("profile_m", rises, "x rising from point to point", "x that does not rise")?;
         each("bands", &self.bands, |band| metres("raise_m", &[band.raise_m]))?;
         let in_order = self.bands.windows(2).all(|pair| pair[0].until_y_m < pair[1].until_y_m);
-        let (last, others) = self
-            .bands
-            .split_last()
-            .map_or((f64::NAN, &[][..]), |(last, others)| (last.until_y_m, others));
-        need("bands", last == f64::INFINITY, "a last band without until_y_m", last)?;
+        let Some((last, others)) = self.bands.split_last() else {
+            return need("bands", false, "at least one band", "none");
+        };
+        let is_endless = last.until_y_m == f64::INFINITY;
+        need("bands", is_endless, "a last band without until_y_m", last.until_y_m)?;
         need("bands", in_order, "until_y_m rising from band to band", "one that does not rise")?;
         each("bands", others, |band| metres("until_y_m", &[band.until_y_m])).map(|_| ())
     }

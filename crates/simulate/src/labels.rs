@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use occlabel_core::{ClassId, Fault, Meaning, PointLabel, Taxonomy};
+use occlabel_core::{ClassId, Fault, Meaning, Palette, PointLabel, Taxonomy};
 
 use crate::check::{each, unknown};
-use crate::palette::class_colour;
 use crate::{What, World};
 
 /// What each part of a world is labelled, and how classes are named and painted.
@@ -27,8 +26,9 @@ impl Labels {
         let label = |key: &str, raw: &str| match taxonomy.points.get(raw) {
             Some(Meaning::Class(class)) => Ok(PointLabel::Class(*class)),
             Some(Meaning::Ignore) => Ok(PointLabel::Ignored),
-            None => Err(unknown(key, "a point label of the taxonomy", raw)),
+            None => Err(unknown(key, "a point label of the taxonomy", taxonomy.points.keys(), raw)),
         };
+        let palette = Palette::of(&taxonomy.names);
         Ok(Self {
             ground: each("ground.bands", &world.ground.bands, |band| label("class", &band.class))?,
             statics: each("static", &world.static_classes, |class| label("class", class))?,
@@ -42,7 +42,7 @@ impl Labels {
                 None => PointLabel::Ignored,
             },
             raw_names: raw_names(taxonomy),
-            colours: taxonomy.names.iter().map(|name| class_colour(name)).collect(),
+            colours: (0..taxonomy.names.len()).map(|id| palette.color(id as u8)).collect(),
         })
     }
 

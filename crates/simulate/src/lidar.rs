@@ -21,7 +21,7 @@ pub struct LidarFile {
     pattern: Pattern,
     rate_hz: f64,
     #[serde(default)]
-    offset_s: f64,
+    pub(crate) offset_s: f64,
     max_range_m: f64,
     #[serde(default)]
     range_noise_m: f64,

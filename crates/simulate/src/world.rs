@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use nalgebra::Point3;
 use occlabel_core::{Fault, Pose, Timestamp};
+use toml::Table;
 
 use crate::annotator::Annotator;
 use crate::bodies::Bodies;
 use crate::camera::WorldCamera;
-use crate::check::{each, inside, need, within};
+use crate::check::{each, in_file, inside, need, within};
 use crate::ego::Ego;
 use crate::ground::Ground;
 use crate::instant::{Instant, What};
@@ -26,6 +27,10 @@ const BEYOND_S: f64 = 101.0;
 /// A world, read from its file and checked: nothing in it can fail.
 #[derive(Clone, Debug)]
 pub struct World {
+    /// The file that it is from, for faults.
+    pub place: String,
+    /// BLAKE3 of what the file says, in hexadecimal; comments and layout do not count.
+    pub hash: String,
     /// Its name, fit for a file.
     pub name: String,
     /// How long the drive lasts from time zero, seconds.
@@ -61,9 +66,11 @@ impl World {
     /// If the text is no TOML, a key is unknown or missing, or a value impossible: the fault's
     /// record is the key.
     pub fn parse(text: &str, place: &str) -> Result<Self, Fault> {
-        let at_key = |key: String, fault: Fault| Fault { place: place.into(), ..fault }.record(key);
-        let file = read(text).map_err(|fault| at_key(fault.place.clone(), fault))?;
-        build(file).map_err(|fault| at_key(fault.place.clone(), fault))
+        let told = |fault| in_file(place, fault);
+        let table = table(text).map_err(told)?;
+        let hash = blake3::hash(table.to_string().as_bytes()).to_string();
+        let world = read(table).and_then(build).map_err(told)?;
+        Ok(Self { place: place.into(), hash, ..world })
     }
 
     /// The world at a time, seconds.
@@ -102,14 +109,26 @@ impl World {
     }
 }
 
-fn read(text: &str) -> Result<WorldFile, Fault> {
-    let not_toml =
-        |error: toml::de::Error| Fault::new("world", "the file", "TOML", error.message());
-    let table = with_models(text.parse().map_err(not_toml)?)?;
+fn table(text: &str) -> Result<Table, Fault> {
+    text.parse()
+        .map_err(|error: toml::de::Error| Fault::new("world", "the file", "TOML", error.message()))
+}
+
+fn read(table: Table) -> Result<WorldFile, Fault> {
+    let table = with_models(table)?;
     serde_path_to_error::deserialize(table).map_err(|error| {
-        let message = error.inner().message().to_owned();
-        Fault::new("world", error.path().to_string(), "a world file's key and value", message)
+        let (expected, found) = told(error.inner().message());
+        Fault::new("world", error.path().to_string(), expected, found)
     })
+}
+
+/// What a reader of TOML expected, as far as it says so, and what it found.
+fn told(message: &str) -> (&str, &str) {
+    match message.split_once(", expected ") {
+        Some((found, expected)) if expected.starts_with("struct ") => ("a table", found),
+        Some((found, expected)) => (expected, found),
+        None => ("a world file's key and value", message),
+    }
 }
 
 fn build(file: WorldFile) -> Result<World, Fault> {
@@ -120,6 +139,8 @@ fn build(file: WorldFile) -> Result<World, Fault> {
     inside("ego", file.ego.check())?;
     let (standing, static_classes) = standing(&file.statics, &file.ground)?;
     let world = World {
+        place: String::new(),
+        hash: String::new(),
         movers: movers(&file)?,
         lidars: lidars(&file)?,
         cameras: cameras(&file)?,
@@ -153,15 +174,25 @@ fn movers(file: &WorldFile) -> Result<Vec<Mover>, Fault> {
 }
 
 fn lidars(file: &WorldFile) -> Result<Vec<Lidar>, Fault> {
-    let lidars = each("lidar", file.lidars.iter().cloned(), Lidar::try_from)?;
+    let lidars = each("lidar", file.lidars.iter().cloned(), |lidar| {
+        begins_within(file.duration_s, lidar.offset_s).and_then(|()| Lidar::try_from(lidar))
+    })?;
     need("lidar", !lidars.is_empty(), "at least one", 0)?;
     in_order("lidar", lidars, |lidar| &lidar.name)
 }
 
 fn cameras(file: &WorldFile) -> Result<Vec<WorldCamera>, Fault> {
-    let cameras = each("camera", file.cameras.iter().cloned(), WorldCamera::try_from)?;
+    let cameras = each("camera", file.cameras.iter().cloned(), |camera| {
+        begins_within(file.duration_s, camera.offset_s).and_then(|()| WorldCamera::try_from(camera))
+    })?;
     need("camera", cameras.len() <= 16, "at most 16", cameras.len())?;
     in_order("camera", cameras, |camera| &camera.named.name)
+}
+
+/// Refuses a sensor that would never work during the drive.
+fn begins_within(duration_s: f64, offset_s: f64) -> Result<(), Fault> {
+    let expected = format!("less than the drive's duration_s, {duration_s}");
+    need("offset_s", offset_s < duration_s, &expected, offset_s)
 }
 
 /// A list in byte order of names, each fit for a file and there once.

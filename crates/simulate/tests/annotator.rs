@@ -313,6 +313,23 @@ fn a_rolling_sweeps_box_stands_amid_its_returns() {
 }
 
 #[test]
+fn between_keyframes_a_mover_stands_where_a_box_between_theirs_does() {
+    let (drive, mut late) = (rolling(""), 0);
+    let late_ns = |time: i64, mover| {
+        let keyframe = drive.keyframe(&time.to_string()).unwrap();
+        (drive.mover_time_s(&keyframe, mover) * 1e9).round() as i64 - time
+    };
+    for mover in 0..MOVERS {
+        let [first, second, last] = [0, 500_000_000, 19_500_000_000].map(|at| late_ns(at, mover));
+        let between = first + (second - first) / 5;
+        assert!((late_ns(100_000_000, mover) - between).abs() <= 2, "{first} {second}");
+        assert!((late_ns(19_900_000_000, mover) - last).abs() <= 2);
+        late += usize::from(between > 0);
+    }
+    assert!(late > 3, "{late}");
+}
+
+#[test]
 fn unseen_movers_have_boxes_unless_points_are_asked_for() {
     let asked = drive("min_points = 3");
     let scene = asked.scene();

@@ -1,9 +1,9 @@
 //! Images of the tiny world: what stands where, pixel by pixel.
 
 use occlabel_core::camera::{RollingShutter, ShutterDirection};
-use occlabel_core::{Fault, PointLabel, Taxonomy, Timestamp};
+use occlabel_core::{Fault, Palette, PointLabel, Taxonomy, Timestamp};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
-use occlabel_simulate::{ClassImage, Drive, NO_CLASS, What, World, class_colour, render};
+use occlabel_simulate::{ClassImage, Drive, NO_CLASS, What, World, render};
 
 const WORLD: &str = r#"
 name = "room"
@@ -106,7 +106,8 @@ fn colours_are_the_classes_own_dimmed_by_the_light() {
     let image = image(&drive);
     let road = (85 * 161 + 80) * 3;
     // Straight up: 0.4 + 0.6 * (1 + 0.8) / 2 of the colour.
-    let expected = class_colour("driveable_surface").map(|c| (f64::from(c) * 0.94).round() as u8);
+    let expected =
+        Palette::of(&["driveable_surface"]).color(0).map(|c| (f64::from(c) * 0.94).round() as u8);
     assert_eq!(image.rgb[road..road + 3], expected);
     assert_eq!(image.rgb.len(), 161 * 91 * 3);
 }

@@ -125,6 +125,34 @@ fn nothing_drives_through_what_stands_and_nothing_floats() {
     }
 }
 
+/// The grids that a taxonomy's labels stand in: voxel size and lower edge in the ego frame, metres.
+fn grids(taxonomy: &str) -> &'static [[f64; 2]] {
+    match taxonomy {
+        "occ3d-nuscenes" => &[[0.4, -1.0]],
+        _ => &[[0.4, -1.0], [0.2, -2.4], [0.1, 0.0]],
+    }
+}
+
+#[test]
+fn no_band_of_ground_lies_in_a_face_of_voxels() {
+    let mut count = 0;
+    for shipped in WORLDS {
+        let world = world(shipped.name);
+        for (band, [size_m, low_m]) in world
+            .ground
+            .bands
+            .iter()
+            .flat_map(|band| grids(&world.taxonomy).iter().map(move |grid| (band, grid)))
+        {
+            let edges = (band.raise_m - world.ego.heave_m.mean - low_m) / size_m;
+            let off_m = (edges - edges.round()).abs() * size_m;
+            assert!(off_m > 0.009, "{}: {} is {off_m} m off a face", shipped.name, band.class);
+            count += 1;
+        }
+    }
+    assert!(count >= 35, "{count}");
+}
+
 #[test]
 fn the_log_of_the_demo_is_well_under_a_megabyte() {
     let drive = drive("street");

@@ -157,6 +157,8 @@ fn bad_world_files_are_refused_by_their_key() {
         ("by = \"truck\"", "by = \"tank\"", "mover[2].towed.by"),
         ("begin_s = 0.2", "begin_s = -0.2", "mover[1].trajectory.turn.begin_s"),
         ("rate_hz = 12.0", "rate_hz = 0.0", "camera[0].rate_hz"),
+        ("offset_s = 0.01", "offset_s = 2.05", "camera[0].offset_s"),
+        ("dropout = 0.1", "dropout = 0.1\noffset_s = 99", "lidar[1].offset_s"),
         ("[[400.0, 0.0", "[[-400.0, 0.0", "camera[0].model"),
         ("count = 24", "count = 1", "lidar[0].pattern.spinning.beams.even.count"),
         ("azimuths = 240", "azimuths = 9000000000", "lidar[0].pattern.rays"),
@@ -181,8 +183,38 @@ fn names_that_the_taxonomy_lacks_are_refused_by_their_key() {
         ("vehicle.ego", "ego", "ego.body.class"),
         ("keyframe_hz = 2.0", "keyframe_hz = 3.0", "keyframe_hz"),
     ] {
-        assert_eq!(refusal(&TINY.replacen(from, to, 1)).place, key);
+        let fault = refusal(&TINY.replacen(from, to, 1));
+        assert_eq!((fault.place.as_str(), fault.record.as_deref()), ("tiny.toml", Some(key)));
     }
+}
+
+#[test]
+fn refusals_list_what_is_known() {
+    for (from, to, known) in [
+        ("vehicle.car", "vehicle.tank", "vehicle.bicycle"),
+        ("static.vegetation", "static.jelly", "static.manmade"),
+        ("model.pinhole", "model.fisheye", "`kannala-brandt`"),
+    ] {
+        assert!(TINY.contains(from), "{from}");
+        let fault = refusal(&TINY.replace(from, to));
+        assert!(fault.expected.contains(known), "{fault}");
+    }
+}
+
+#[test]
+fn a_ground_without_bands_is_refused_as_such() {
+    let (before, rest) = TINY.split_once("bands = [").unwrap();
+    let (_, after) = rest.split_once("\n]").unwrap();
+    let fault = refusal(&format!("{before}bands = []{after}"));
+    assert_eq!((fault.expected.as_str(), fault.found.as_str()), ("at least one band", "none"));
+}
+
+#[test]
+fn a_worlds_hash_is_of_what_it_says_not_of_how() {
+    let hash = |text: &str| World::parse(text, "tiny.toml").unwrap().hash;
+    assert_eq!(hash(TINY), hash(&format!("# A comment.\n{TINY}\n")));
+    assert_ne!(hash(TINY), hash(&TINY.replacen("seed = 7", "seed = 8", 1)));
+    assert_eq!(hash(TINY).len(), 64);
 }
 
 fn rules() -> Rules {

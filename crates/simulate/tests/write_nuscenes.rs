@@ -155,6 +155,20 @@ fn keyframes_are_found_again_by_their_tokens() {
     assert!(exposures > 15, "{exposures}");
 }
 
+#[test]
+fn any_sweep_of_the_reference_lidar_is_found_by_its_token() {
+    let (_folder, drive, log) = logged();
+    let mut between = 0;
+    for (at, sweep) in log.load("tiny").unwrap().sweeps.iter().enumerate() {
+        if sweep.lidar == "LIDAR_TOP" {
+            assert_eq!(drive.keyframe(&sweep.source_id).unwrap().sweep, at);
+            between += usize::from(drive.scene().keyframes.iter().all(|key| key.sweep != at));
+        }
+    }
+    assert!(between > 10, "{between}");
+    assert!(drive.keyframe("tiny-LIDAR_TOP-1").is_none() && drive.keyframe("tiny").is_none());
+}
+
 /// A cloud as a file of 32-bit numbers keeps it; the format knows one origin only.
 fn as_logged(mut cloud: PointCloud<PointLabel>) -> PointCloud<PointLabel> {
     cloud.positions.iter_mut().for_each(|p| *p = p.cast::<f32>().cast::<f64>());

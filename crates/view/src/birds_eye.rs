@@ -95,7 +95,7 @@ fn color(labels: &Painted, column: Column, ahead_left: Column, nz: usize) -> Rgb
             let top = (z + 1) as f64;
             let other = ahead_left.top().map_or(top, |other| other as f64);
             let light = 0.78 + 0.22 * top / nz as f64 + 0.07 * (top - other).clamp(-2.0, 2.0);
-            let color = lit(labels.palette.color(class), light);
+            let color = lit(labels.color(class), light);
             if dull { hidden(color) } else { color }
         }
     }

@@ -48,10 +48,9 @@ fn look_down(labels: &Painted, voxels: std::ops::Range<usize>, cameras: bool) ->
 
 #[cfg(test)]
 mod tests {
-    use occlabel_core::{GridSpec, VoxelGrid};
+    use occlabel_core::{GridSpec, Palette, VoxelGrid};
 
     use super::*;
-    use crate::Palette;
 
     const FREE: u8 = 9;
 

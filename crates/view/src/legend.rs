@@ -21,7 +21,7 @@ pub(crate) struct Legend {
 impl Legend {
     /// The classes that occur in the labels.
     pub(crate) fn of(labels: &Painted) -> Self {
-        let entry = |id: u8| (labels.palette.color(id), labels.palette.label(id));
+        let entry = |id: u8| (labels.color(id), labels.palette.label(id));
         Self { entries: labels.present().into_iter().map(entry).collect() }
     }
 

@@ -9,8 +9,8 @@
 //! [`birds_eye`] and [`perspective`]. Whatever else is to be drawn needs a new painter only.
 //!
 //! ```
-//! use occlabel_core::{GridSpec, VoxelGrid};
-//! use occlabel_view::{BirdsEye, Orbit, Painted, Palette, birds_eye, perspective, png};
+//! use occlabel_core::{GridSpec, Palette, VoxelGrid};
+//! use occlabel_view::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
 //!
 //! let spec = GridSpec::new([0.0; 3], [4.0, 4.0, 2.0], [1.0; 3])?;
 //! let mut semantics = VoxelGrid::filled(&spec, 17);
@@ -42,7 +42,6 @@ mod lens;
 mod marks;
 mod orbit;
 mod painted;
-mod palette;
 mod perspective;
 mod png;
 mod shade;
@@ -50,6 +49,5 @@ mod shade;
 pub use birds_eye::{BirdsEye, birds_eye};
 pub use orbit::Orbit;
 pub use painted::Painted;
-pub use palette::Palette;
 pub use perspective::perspective;
 pub use png::png;

@@ -1,9 +1,8 @@
 //! Labels as they are drawn.
 
 use image::Rgb;
-use occlabel_core::{GridSpec, VoxelGrid};
+use occlabel_core::{GridSpec, Palette, VoxelGrid};
 
-use crate::Palette;
 use crate::color::{HIDDEN, mix};
 
 /// The labels of one keyframe, and their colours.
@@ -32,6 +31,11 @@ impl Painted<'_> {
         for grid in [self.semantics, self.mask_lidar, self.mask_camera] {
             assert_eq!(grid.shape(), self.spec.shape(), "grids of the spec's shape");
         }
+    }
+
+    /// The colour of a class.
+    pub(crate) fn color(&self, class: u8) -> Rgb<u8> {
+        Rgb(self.palette.color(class))
     }
 
     /// The class at a place of the flat array, if that is occupied.

@@ -52,7 +52,7 @@ fn legend(labels: &Painted, cameras: bool) -> Legend {
 }
 
 fn color(labels: &Painted, flat: usize, cameras: bool) -> Rgb<u8> {
-    let color = labels.class(flat).map_or(FLOOR, |class| labels.palette.color(class));
+    let color = labels.class(flat).map_or(FLOOR, |class| labels.color(class));
     if cameras && labels.mask_camera.values()[flat] == 0 { hidden(color) } else { color }
 }
 

@@ -1,11 +1,13 @@
 //! A scene that will be labelled, and why one will not.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use occlabel_core::{BoxTrack, Fault, Keyframe, Scene};
 use occlabel_labels::{SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile};
 use occlabel_pipeline::MemoryModel;
+use occlabel_simulate::World;
 
 use crate::label::Job;
 use crate::label::findings::Findings;
@@ -54,6 +56,10 @@ impl PlannedScene {
         let wanted = chosen_keyframes(job, &scene, tokens);
         if wanted.is_empty() && !job.args.keyframes.is_empty() {
             return Ok(None);
+        }
+        if wanted.is_empty() {
+            let fault = Fault::new("no-keyframes", "the scene", "keyframes to label", "none");
+            findings.warn(job.console, name, &fault);
         }
         job.opened.rules.check_labels(&scene).map_err(Refused::Configuration)?;
         scene.warnings.iter().for_each(|fault| findings.warn(job.console, name, fault));
@@ -189,5 +195,16 @@ fn scene_record(job: &Job, scene: &Scene) -> SceneRecord {
         cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
         tracks: scene.tracks.iter().map(track).collect(),
         keyframes: scene.keyframes.iter().map(|keyframe| keyframe.token.clone()).collect(),
+        world: world_hash(&job.args.log.input, &scene.name),
     }
+}
+
+/// The hash of the world that lies beside a simulated log; none beside a real one.
+fn world_hash(root: &Path, scene: &str) -> Option<String> {
+    let files = [format!("{scene}.toml"), "world.toml".to_owned()];
+    let worlds = files.iter().filter_map(|file| {
+        let text = std::fs::read_to_string(root.join("truth").join(file)).ok()?;
+        World::parse(&text, file).ok()
+    });
+    worlds.into_iter().find(|world| world.name == scene).map(|world| world.hash)
 }

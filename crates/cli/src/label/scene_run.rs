@@ -70,6 +70,9 @@ impl SceneRun<'_> {
         let book = reader.close();
         book.tell(self.job, &scene.name, self.progress, findings);
         done.tally.not_finite = book.not_finite();
+        if done.tally.points == 0 {
+            findings.warn(self.job.console, &scene.name, &no_points());
+        }
         todo.retain(|keyframe| match book.refusal_of(&scene, keyframe) {
             Some(fault) => {
                 findings.lose(self.job.console, &scene.name, &fault);
@@ -185,6 +188,12 @@ impl SceneDone {
         self.tally.voxels.add(&summary.voxels);
         self.entries.push(entry.clone());
     }
+}
+
+/// What becomes of a scene in which no lidar saw anything.
+fn no_points() -> Fault {
+    let found = "none: nothing is observed in any voxel";
+    Fault::new("no-points", "all sweeps", "points that count", found)
 }
 
 /// Annotated boxes at the time of a sweep that hold no point of it.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use occlabel_core::{Fault, GridSpec, Keyframe, VoxelGrid};
+use occlabel_core::{Fault, GridSpec, Keyframe, Timestamp, VoxelGrid};
 use occlabel_evaluate::JudgedLabels;
 use occlabel_labels::{LabelArrays, LabelTree, Manifest, TreePath, read_evidence, read_labels};
 use occlabel_pipeline::{Config, Rules};
@@ -53,26 +53,28 @@ impl JudgedTree {
         &self.rules.spec
     }
 
-    /// The tree's own token of a keyframe of the drive; none if it does not label it.
-    pub(crate) fn token_of(&self, scene: &str, drive: &Drive, keyframe: &Keyframe) -> Option<&str> {
-        let is_it = |token: &&String| {
-            drive.keyframe(token).is_some_and(|known| known.time == keyframe.time)
-        };
+    /// The hash of the world that the scene's log was simulated in, if the tree knows it.
+    pub(crate) fn world_hash(&self, scene: &str) -> Option<&str> {
+        self.manifest.scenes.get(scene)?.world.as_deref()
+    }
+
+    /// The tree's own token of the keyframe at a time; none if it does not label it.
+    pub(crate) fn token_at(&self, scene: &str, time: Timestamp) -> Option<&str> {
+        let is_it = |token: &&String| Drive::time_of(token) == Some(time);
         self.manifest.scenes.get(scene)?.keyframes.iter().find(is_it).map(String::as_str)
     }
 
-    /// Refuses tokens that are no keyframe of the drive.
-    pub(crate) fn check_tokens(&self, scene: &str, drive: &Drive) -> Result<(), Fault> {
-        let Some(record) = self.manifest.scenes.get(scene) else { return Ok(()) };
-        match record.keyframes.iter().find(|token| drive.keyframe(token).is_none()) {
-            None => Ok(()),
-            Some(token) => {
-                let expected =
-                    format!("keyframes of the world `{scene}`, as its keyframe_hz has them");
-                let fault = Fault::new("world-truth", &self.name, expected, format!("`{token}`"));
-                Err(fault.hint("label with keyframes.source = \"annotated\""))
-            }
-        }
+    /// The keyframes of a drive that the tree labels.
+    pub(crate) fn keyframes(&self, scene: &str, drive: &Drive) -> Result<Vec<Keyframe>, Fault> {
+        let record = self.manifest.scenes.get(scene);
+        let tokens = record.iter().flat_map(|record| &record.keyframes);
+        let keyframe = |token: &String| {
+            drive.keyframe(token).ok_or_else(|| {
+                let expected = format!("times of the reference lidar's sweeps in world `{scene}`");
+                Fault::new("world-truth", &self.name, expected, format!("`{token}`"))
+            })
+        };
+        tokens.map(keyframe).collect()
     }
 
     /// The labels of a keyframe, and its flow if the tree has evidence.

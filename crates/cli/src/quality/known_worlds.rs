@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
-use occlabel_simulate::World;
+use occlabel_simulate::{World, shipped_world};
 
 /// Worlds by name.
 pub(crate) struct KnownWorlds {
@@ -13,9 +13,14 @@ pub(crate) struct KnownWorlds {
 }
 
 impl KnownWorlds {
-    /// Reads a world file, all that a folder holds, or those of a simulated log's `truth` folder.
+    /// Reads a world file, all that a folder holds, or those of a simulated log's `truth` folder;
+    /// where there is nothing of the name, the shipped world.
     pub(crate) fn read(place: &Path) -> Result<Self, Fault> {
-        let worlds = files(place)?.iter().map(|file| world(file)).collect::<Result<Vec<_>, _>>()?;
+        let shipped = place.to_str().filter(|_| !place.exists()).and_then(shipped_world);
+        let worlds = match shipped {
+            Some(text) => vec![World::parse(text, &format!("{}.toml", place.display()))?],
+            None => files(place)?.iter().map(|file| world(file)).collect::<Result<_, _>>()?,
+        };
         let worlds = worlds.into_iter().map(|world| (world.name.clone(), world)).collect();
         Ok(Self { place: place.display().to_string(), worlds })
     }
@@ -27,6 +32,17 @@ impl KnownWorlds {
             let expected = format!("the world of the labelled scene `{scene}`");
             Fault::new("world-truth", &self.place, expected, known.join(", "))
         })
+    }
+
+    /// Refuses a world that is not the one of a hash, though its name be the same.
+    pub(crate) fn check(&self, world: &World, hash: &str) -> Result<(), Fault> {
+        if world.hash == hash {
+            return Ok(());
+        }
+        let expected = format!("the very world `{}` that was labelled, of hash {hash}", world.name);
+        let found = format!("another of that name, of hash {}", world.hash);
+        let fault = Fault::new("world-truth", &self.place, expected, found);
+        Err(fault.hint("the simulated log's own folder holds its world, with all that was set"))
     }
 }
 

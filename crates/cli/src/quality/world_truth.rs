@@ -1,9 +1,10 @@
 //! `quality --world-truth`: label trees against the exactly known world they were made of.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use occlabel_core::{Exposure, Fault, Keyframe};
-use occlabel_evaluate::{KnownWorld, Limits, Scale, Tally, judge};
+use occlabel_core::{Exposure, Fault, Keyframe, Timestamp};
+use occlabel_evaluate::{COSTLY_FIGURES, KnownWorld, Limits, Scale, Tally, judge};
 use occlabel_occlusion::Eye;
 use occlabel_simulate::{
     Drive, TrueRays, TruthAt, TruthSettings, World, dense_ends, keyframe_truth,
@@ -18,7 +19,7 @@ use crate::quality::verdict;
 use crate::threads::start_threads;
 
 pub(crate) fn run(args: &QualityArgs, truth: &Path, console: &Console) -> Result<Outcome, Stop> {
-    let limits = args.limits.as_deref().map(limits).transpose().map_err(Stop::usage)?;
+    let limits = asked_limits(args, console).map_err(Stop::usage)?;
     let worlds = KnownWorlds::read(truth).map_err(Stop::usage)?;
     let trees: Vec<JudgedTree> = args
         .trees
@@ -30,10 +31,44 @@ pub(crate) fn run(args: &QualityArgs, truth: &Path, console: &Console) -> Result
     let mut tallies = vec![Tally::default(); trees.len()];
     for scene in trees[0].manifest.scenes.keys() {
         console.info(&format!("{scene}: driving through its world"));
-        judge_scene(worlds.of(scene).map_err(Stop::usage)?, &trees, args.quick, &mut tallies)?;
+        let world = world_of(scene, &worlds, &trees, console).map_err(Stop::usage)?;
+        judge_scene(world, &trees, args.quick, &mut tallies)?;
     }
     let judged = trees.iter().zip(tallies.iter().map(Tally::quality));
     verdict::tell(&judged.collect::<Vec<_>>(), limits.as_ref(), args.json, console)
+}
+
+/// The world that every tree's scene was driven in.
+fn world_of<'w>(
+    scene: &str,
+    worlds: &'w KnownWorlds,
+    trees: &[JudgedTree],
+    console: &Console,
+) -> Result<&'w World, Fault> {
+    let world = worlds.of(scene)?;
+    for tree in trees {
+        match tree.world_hash(scene) {
+            Some(hash) => worlds.check(world, hash)?,
+            None => console.info(&format!(
+                "{}: made where no world lay beside the log: taken on trust that it is `{scene}`",
+                tree.name
+            )),
+        }
+    }
+    Ok(world)
+}
+
+/// The limits on those figures that are taken.
+fn asked_limits(args: &QualityArgs, console: &Console) -> Result<Option<Limits>, Fault> {
+    let Some(limits) = args.limits.as_deref().map(limits).transpose()? else { return Ok(None) };
+    if !args.quick {
+        return Ok(Some(limits));
+    }
+    let (limits, unasked) = limits.without(COSTLY_FIGURES);
+    if !unasked.is_empty() {
+        console.info(&format!("--quick leaves these limits unasked: {}", unasked.join(", ")));
+    }
+    Ok(Some(limits))
 }
 
 /// `precise`, or a file of limits.
@@ -59,11 +94,22 @@ fn judge_scene(
     let rays = TrueRays::cast(&drive);
     let mut at = 0;
     for alike in trees.chunk_by(same_truth) {
-        let bench = Bench { drive: &drive, rays: &rays, trees: alike, quick };
+        let keyframes = labelled(alike, &drive)?;
+        let bench = Bench { drive: &drive, rays: &rays, trees: alike, keyframes, quick };
         bench.judge(&mut tallies[at..at + alike.len()])?;
         at += alike.len();
     }
     Ok(())
+}
+
+/// The keyframes of a drive that some tree labels, by time.
+fn labelled(trees: &[JudgedTree], drive: &Drive) -> Result<BTreeMap<Timestamp, Keyframe>, Fault> {
+    let mut labelled = BTreeMap::new();
+    for tree in trees {
+        let keyframes = tree.keyframes(&drive.scene().name, drive)?;
+        labelled.extend(keyframes.into_iter().map(|keyframe| (keyframe.time, keyframe)));
+    }
+    Ok(labelled)
 }
 
 /// Whether the same truth holds for two trees.
@@ -79,12 +125,14 @@ struct Bench<'a> {
     drive: &'a Drive,
     rays: &'a TrueRays,
     trees: &'a [JudgedTree],
+    /// Those that some tree labels.
+    keyframes: BTreeMap<Timestamp, Keyframe>,
     quick: bool,
 }
 
 impl Bench<'_> {
     fn judge(&self, tallies: &mut [Tally]) -> Result<(), Fault> {
-        let places = self.places()?;
+        let places = self.places();
         let settings = self.settings();
         let dense = match self.quick {
             true => Vec::new(),
@@ -112,7 +160,7 @@ impl Bench<'_> {
         keyframe: &Keyframe,
         known: &KnownWorld,
     ) -> Result<Tally, Fault> {
-        let Some(token) = tree.token_of(known.scene, self.drive, keyframe) else {
+        let Some(token) = tree.token_at(known.scene, keyframe.time) else {
             return Ok(Tally::default());
         };
         let arrays = tree.read(known.scene, token)?;
@@ -123,24 +171,18 @@ impl Bench<'_> {
         judge(&arrays.judged(), known, &scale).map_err(|fault| fault.record(token))
     }
 
-    /// The keyframes that some tree labels, each with its grid where it truly stands.
-    fn places(&self) -> Result<Vec<TruthAt<'_>>, Fault> {
-        let scene = self.drive.scene();
-        let is_labelled = |keyframe: &&Keyframe| {
-            self.trees.iter().any(|tree| tree.token_of(&scene.name, self.drive, keyframe).is_some())
-        };
+    /// The keyframes, each with its grid where it truly stands.
+    fn places(&self) -> Vec<TruthAt<'_>> {
         let rules = &self.trees[0].rules;
         let place = |keyframe| {
-            let reference = self.drive.true_header(scene.reference_sweep(keyframe));
+            let reference = self.drive.true_header(self.drive.scene().reference_sweep(keyframe));
             TruthAt {
                 keyframe,
                 spec: &rules.spec,
                 world_from_grid: rules.world_from_grid(&reference),
             }
         };
-        let places: Vec<_> = scene.keyframes.iter().filter(is_labelled).map(place).collect();
-        self.trees.iter().try_for_each(|tree| tree.check_tokens(&scene.name, self.drive))?;
-        Ok(places)
+        self.keyframes.values().map(place).collect()
     }
 
     fn settings(&self) -> TruthSettings {

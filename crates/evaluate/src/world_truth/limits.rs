@@ -33,6 +33,10 @@ struct LimitsFile {
     at_most: BTreeMap<String, f64>,
 }
 
+/// The figures that need denser rays or cameras, and are left out where neither is asked for.
+pub const COSTLY_FIGURES: &[&str] =
+    &["surface_recall_dense", "mask_camera_iou", "mask_camera_sight_iou"];
+
 /// A figure that does not keep its limit, or could not be asked at all.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Miss {
@@ -65,6 +69,16 @@ impl Limits {
             at_least: PRECISE_AT_LEAST.into_iter().map(named).collect(),
             at_most: PRECISE_AT_MOST.into_iter().map(named).collect(),
         }
+    }
+
+    /// The limits on all but some figures, and the names of those that go.
+    pub fn without(mut self, figures: &[&str]) -> (Self, Vec<String>) {
+        let mut gone = Vec::new();
+        for bounds in [&mut self.at_least, &mut self.at_most] {
+            let taken = figures.iter().filter_map(|name| bounds.remove_entry(*name));
+            gone.extend(taken.map(|(name, _)| name));
+        }
+        (self, gone)
     }
 
     /// The limits that a quality does not keep, in order of name, the lower limits first.

@@ -15,7 +15,7 @@ mod tally;
 
 pub use figures::{Figures, Value};
 pub use judge::{JudgedLabels, KnownWorld, judge};
-pub use limits::{Limits, Miss};
+pub use limits::{COSTLY_FIGURES, Limits, Miss};
 pub use quality::{ClassQuality, Quality, RingQuality, WorstObject};
 pub use scale::{RINGS_M, Scale};
 pub use tally::Tally;

@@ -86,5 +86,6 @@ impl Boxes<'_> {
 fn meaning(taxonomy: &Taxonomy, mover: &str, category: &str) -> Result<Meaning, Fault> {
     let key = format!("mover {mover}.category");
     let known = taxonomy.boxes.get(category).copied();
-    known.ok_or_else(|| unknown(&key, "a box category of the taxonomy", category))
+    let names = taxonomy.boxes.keys();
+    known.ok_or_else(|| unknown(&key, "a box category of the taxonomy", names, category))
 }

@@ -33,9 +33,23 @@ impl Sightings {
         Self(keyframes.par_iter().map(see).collect::<Vec<_>>().into_iter().collect())
     }
 
-    /// When a mover stands where its box at a keyframe's time says.
-    pub(crate) fn box_time(&self, keyframe: Timestamp, mover: usize) -> Timestamp {
-        self.0.get(&keyframe).map_or(keyframe, |movers| movers[mover].box_time)
+    /// When a mover stands where its box at a time says: one that was drawn at a keyframe, or one
+    /// straight between those of the keyframes around.
+    pub(crate) fn box_time(&self, time: Timestamp, mover: usize) -> Timestamp {
+        let late_ns = |(keyframe, movers): (&Timestamp, &Vec<Sighting>)| {
+            (keyframe.0, movers[mover].box_time.0 - keyframe.0)
+        };
+        let before = self.0.range(..=time).next_back().map(late_ns);
+        let after = self.0.range(time..).next().map(late_ns);
+        let late_ns = match (before, after) {
+            (Some((a, late_a)), Some((b, late_b))) if a < b => {
+                let share = (time.0 - a) as f64 / (b - a) as f64;
+                late_a + ((late_b - late_a) as f64 * share).round() as i64
+            }
+            (Some((_, late)), _) | (None, Some((_, late))) => late,
+            (None, None) => 0,
+        };
+        Timestamp(time.0 + late_ns)
     }
 
     /// Whether a mover has enough returns in a keyframe's reference sweep.

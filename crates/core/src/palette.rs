@@ -1,11 +1,9 @@
 //! Which colour a class has.
 
-use image::Rgb;
-
-/// The names and colours of classes, in id order.
+/// The names and colours of classes, in id order: red, green, blue.
 #[derive(Clone, Debug)]
 pub struct Palette {
-    classes: Vec<(String, Rgb<u8>)>,
+    classes: Vec<(String, [u8; 3])>,
 }
 
 impl Palette {
@@ -28,7 +26,7 @@ impl Palette {
     }
 
     /// The colour of a class; of an id without a name, one that follows from the id.
-    pub fn color(&self, id: u8) -> Rgb<u8> {
+    pub fn color(&self, id: u8) -> [u8; 3] {
         match self.classes.get(usize::from(id)) {
             Some((_, color)) => *color,
             None => hue(u32::from(id) * GOLDEN_ANGLE, 0),
@@ -36,7 +34,7 @@ impl Palette {
     }
 
     /// The name of a class, as a reader likes it.
-    pub(crate) fn label(&self, id: u8) -> String {
+    pub fn label(&self, id: u8) -> String {
         match self.classes.get(usize::from(id)) {
             Some((name, _)) => name.replace('_', " "),
             None => format!("class {id}"),
@@ -103,28 +101,28 @@ const GOLDEN_ANGLE: u32 = 137;
 /// Two colours at least so far apart in red, green and blue together are told apart.
 const UNLIKE: u32 = 60;
 
-fn known_color(name: &str) -> Option<Rgb<u8>> {
+fn known_color(name: &str) -> Option<[u8; 3]> {
     let name = name.to_ascii_lowercase().replace(['_', '-'], " ");
     let (_, color) = KNOWN.iter().find(|(known, _)| *known == name)?;
-    Some(Rgb(*color))
+    Some(*color)
 }
 
 /// The first colour on the way around the circle that is unlike all taken ones, or else the one that
 /// is least like any.
-fn unlike(taken: &[Rgb<u8>], start: u32) -> Rgb<u8> {
-    let nearest = |color: &Rgb<u8>| taken.iter().map(|other| apart(*color, *other)).min();
+fn unlike(taken: &[[u8; 3]], start: u32) -> [u8; 3] {
+    let nearest = |color: &[u8; 3]| taken.iter().map(|other| apart(*color, *other)).min();
     let way = || (0..72).map(|turn| hue(start % 360 + turn * GOLDEN_ANGLE, turn / 24));
     let clear = way().find(|color| nearest(color).is_none_or(|d| d >= UNLIKE));
     let farthest = || way().max_by_key(nearest);
     clear.or_else(farthest).expect("a way of 72 colours")
 }
 
-fn apart(a: Rgb<u8>, b: Rgb<u8>) -> u32 {
-    (0..3).map(|i| u32::from(a.0[i].abs_diff(b.0[i]))).sum()
+fn apart(a: [u8; 3], b: [u8; 3]) -> u32 {
+    (0..3).map(|i| u32::from(a[i].abs_diff(b[i]))).sum()
 }
 
 /// A colour by its angle in degrees, in one of three strengths.
-fn hue(degrees: u32, strength: u32) -> Rgb<u8> {
+fn hue(degrees: u32, strength: u32) -> [u8; 3] {
     let (low, high) = [(70, 235), (30, 170), (130, 250)][strength as usize % 3];
     let sixth = degrees % 360;
     let ramp = |d: u32| low + (high - low) * (d % 60) / 60;
@@ -137,7 +135,7 @@ fn hue(degrees: u32, strength: u32) -> Rgb<u8> {
         [up, low, high],
         [high, low, down],
     ][(sixth / 60) as usize];
-    Rgb(channels.map(|channel| channel as u8))
+    channels.map(|channel| channel as u8)
 }
 
 /// FNV-1a, 32 bits.
@@ -153,7 +151,7 @@ mod tests {
     #[test]
     fn a_known_name_has_its_color_however_it_is_spelt() {
         let palette = Palette::of(&["car", "driveable_surface", "Traffic Light", "traffic_cone"]);
-        let colors: Vec<_> = (0..4).map(|id| palette.color(id).0).collect();
+        let colors: Vec<_> = (0..4).map(|id| palette.color(id)).collect();
         assert_eq!(colors, [[0, 150, 245], [255, 0, 255], [250, 170, 30], [255, 240, 150]]);
         assert_eq!(palette.label(1), "driveable surface");
     }
