@@ -57,18 +57,20 @@ impl Components {
             let key = vec![time(), byte(camera.number)];
             self.push("camera_image", key, image_cells(camera, image));
         }
-        for image in &frame.lidars {
-            let key = || vec![time(), byte(image.lidar)];
-            self.push("lidar", key(), range_cells(image));
-            if let Some(poses) = &image.poses {
-                self.push("lidar_pose", key(), matrix(image, POSE, Cell::Floats(poses.clone())));
-            }
-            if let Some(labels) = &image.labels {
-                self.push("lidar_segmentation", key(), label_cells(image, labels));
-            }
-        }
+        frame.lidars.iter().for_each(|image| self.range_image(time, image));
         let mut large = ["lidar", "lidar_pose", "lidar_segmentation"].into_iter();
         large.try_for_each(|component| self.table(component).flush())
+    }
+
+    fn range_image(&mut self, time: impl Fn() -> Cell, image: &RangeImage) {
+        let key = || vec![time(), byte(image.lidar)];
+        self.push("lidar", key(), range_cells(image));
+        if let Some(poses) = &image.poses {
+            self.push("lidar_pose", key(), matrix(image, POSE, Cell::Floats(poses.clone())));
+        }
+        if let Some(labels) = &image.labels {
+            self.push("lidar_segmentation", key(), label_cells(image, labels));
+        }
     }
 
     /// Writes what was kept.
