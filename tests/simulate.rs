@@ -72,10 +72,10 @@ fn what_cannot_be_simulated_exits_with_2() {
     let nowhere = ["simulate", "--world", "nowhere", "--format", "mcap", "--output", text(&out)];
     occlabel(&nowhere).exits(2).tells(&["nowhere", "street, crossing"]);
     assert!(!out.exists());
-    let fisheye = [
-        "--set",
-        "camera.CAM_BACK.model={ kannala-brandt = { matrix = [[250.0, 0.0, 240.0], [0.0, 250.0, 135.0], [0.0, 0.0, 1.0]], distortion = [0.0, 0.0, 0.0, 0.0] } }",
-    ];
+    let matrix = "[[250.0, 0.0, 240.0], [0.0, 250.0, 135.0], [0.0, 0.0, 1.0]]";
+    let lens = format!("{{ matrix = {matrix}, distortion = [0.0, 0.0, 0.0, 0.0] }}");
+    let model = format!("camera.CAM_BACK.model={{ kannala-brandt = {lens} }}");
+    let fisheye = ["--set", &model];
     refused(&fisheye, "waymo").tells(&["camera.CAM_BACK.model", "kannala-brandt"]);
     assert!(files_under(&out).is_empty());
 }

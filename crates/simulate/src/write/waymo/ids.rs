@@ -93,6 +93,9 @@ pub(super) fn numbers(sensors: &[&str], names: &[&str]) -> Option<Vec<u64>> {
 
 #[cfg(test)]
 mod tests {
+    use occlabel_core::Meaning;
+    use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
+
     use super::*;
 
     #[test]
@@ -102,6 +105,23 @@ mod tests {
         assert_eq!(["CAR", "SIDEWALK", "17", "UNDEFINED", "jelly"].map(class), [1, 22, 17, 0, 0]);
         let boxed = ["vehicle.trailer", "person", "traffic sign", "vehicle.bicycle", "4", "POLE"];
         assert_eq!(boxed.map(box_type), [Some(1), Some(2), Some(3), Some(4), Some(4), None]);
+    }
+
+    #[test]
+    fn ids_mean_what_the_names_that_they_stand_for_mean() {
+        let text = shipped_taxonomy("occ3d-waymo").unwrap();
+        let taxonomy = parse_taxonomy(text, "occ3d-waymo").unwrap();
+        let points = taxonomy.points.iter().filter(|(_, meaning)| **meaning != Meaning::Ignore);
+        for (name, meaning) in points.clone() {
+            assert_eq!(taxonomy.points.get(&class(name).to_string()), Some(meaning), "{name}");
+        }
+        let boxed = taxonomy.boxes.iter().filter_map(|(name, meaning)| {
+            box_type(name).map(|kind| (name, meaning, kind.to_string()))
+        });
+        for (name, meaning, kind) in boxed.clone() {
+            assert_eq!(taxonomy.boxes.get(&kind), Some(meaning), "{name}");
+        }
+        assert!(points.count() > 80 && boxed.count() > 25);
     }
 
     #[test]
