@@ -11,7 +11,8 @@ use super::frame::{BoxLabel, Frame, Image};
 use super::message::{matrix_numbers, shutter_times};
 use super::parquet_table::{Cell, Table};
 use super::range_image::{LABEL, PIXEL, POSE, RangeImage};
-use super::rig::{Rig, RigCamera, RigLidar};
+use super::rig::{Rig, RigLidar};
+use super::rig_camera::RigCamera;
 
 /// The component without which no frame has a place.
 pub(super) const VEHICLE_POSE: &str = "vehicle_pose";

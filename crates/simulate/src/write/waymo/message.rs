@@ -10,7 +10,8 @@ use crate::write::wire::Wire;
 
 use super::frame::{BoxLabel, Frame, Image};
 use super::range_image::{LABEL, PIXEL, POSE, RangeImage};
-use super::rig::{Rig, RigCamera, RigLidar};
+use super::rig::{Rig, RigLidar};
+use super::rig_camera::RigCamera;
 
 /// Numbers of a pixel that say where cameras see it: 0 for no camera.
 const PROJECTION: usize = 6;

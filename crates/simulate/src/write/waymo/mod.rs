@@ -21,6 +21,7 @@ mod message;
 mod parquet_table;
 mod range_image;
 mod rig;
+mod rig_camera;
 mod tfrecord;
 
 use occlabel_core::Fault;

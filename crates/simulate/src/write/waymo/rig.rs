@@ -1,14 +1,13 @@
 //! The sensors of a drive as the format has them.
 
 use nalgebra::Vector3;
-use occlabel_core::camera::{CameraModel, RollingShutter, ShutterDirection};
-use occlabel_core::{Camera, Fault, Pose};
+use occlabel_core::{Fault, Pose};
 
-use crate::camera::body_from_optical;
 use crate::{Drive, Lidar, Pattern, World};
 
 use super::align::{LEAST_COSINE, azimuth_rad, column, lidar_from_format, yaw_rad};
 use super::ids::{CAMERAS, LIDARS, TOP, numbers};
+use super::rig_camera::RigCamera;
 
 /// All sensors, in the order of the world's.
 pub(super) struct Rig {
@@ -28,18 +27,6 @@ pub(super) struct RigLidar {
     pub(super) columns: Vec<usize>,
 }
 
-/// A camera of at most five coefficients.
-pub(super) struct RigCamera {
-    pub(super) number: u64,
-    /// `f_u f_v c_u c_v k1 k2 p1 p2 k3`.
-    pub(super) intrinsic: [f64; 9],
-    /// The format's camera looks along x, its left is y, its up z.
-    pub(super) ego_from_format: Pose,
-    pub(super) size: [u32; 2],
-    /// The number of its shutter's direction, and how long it reads out an image.
-    pub(super) shutter: (u64, f64),
-}
-
 impl Rig {
     /// The sensors of a drive.
     ///
@@ -50,7 +37,7 @@ impl Rig {
         let lidar = |(at, number)| lidar(world, at, number, &poses.ego_from_lidar[at]);
         let camera = |(at, number): (usize, u64)| {
             let named = &world.cameras[at].named;
-            camera(&named.camera, number, &poses.ego_from_camera[at])
+            RigCamera::new(&named.camera, number, &poses.ego_from_camera[at])
                 .map_err(|found| refused(format!("camera.{}.model", named.name), A_LENS, found))
         };
         let lidars = lidar_numbers(world)?.into_iter().enumerate().map(lidar);
@@ -150,48 +137,6 @@ fn rows(rings_rad: impl Iterator<Item = f64>) -> (Vec<usize>, Vec<f64>) {
         rows[*ring] = sorted.len() - 1 - from_below;
     }
     (rows, sorted.into_iter().map(|(_, inclination_rad)| inclination_rad).collect())
-}
-
-fn camera(camera: &Camera, number: u64, ego_from_camera: &Pose) -> Result<RigCamera, String> {
-    Ok(RigCamera {
-        number,
-        intrinsic: intrinsic(&camera.model)?,
-        ego_from_format: ego_from_camera * body_from_optical().inverse(),
-        size: [camera.width, camera.height],
-        shutter: camera.rolling_shutter.map_or((GLOBAL_SHUTTER, 0.0), shutter),
-    })
-}
-
-/// Else what was found.
-fn intrinsic(model: &CameraModel) -> Result<[f64; 9], String> {
-    let (kind, lens) = match model {
-        CameraModel::Pinhole(_) => ("pinhole", model.intrinsics()),
-        CameraModel::BrownConrady(_) => ("brown-conrady", model.intrinsics()),
-        CameraModel::KannalaBrandt(_) => ("kannala-brandt", None),
-        CameraModel::Mei(_) => ("mei", None),
-        CameraModel::Ocam(_) => ("ocam", None),
-    };
-    let Some(lens) = lens else { return Err(kind.into()) };
-    let ([[fx, skew, cx], [_, fy, cy], _], coefficients) = (lens.matrix(), model.coefficients());
-    if skew != 0.0 || coefficients.len() > 5 {
-        return Err(format!("{kind} of skew {skew} with {} coefficients", coefficients.len()));
-    }
-    let mut intrinsic = [fx, fy, cx, cy, 0.0, 0.0, 0.0, 0.0, 0.0];
-    intrinsic[4..4 + coefficients.len()].copy_from_slice(&coefficients);
-    Ok(intrinsic)
-}
-
-/// The format's number of a shutter that reads all lines at once.
-const GLOBAL_SHUTTER: u64 = 5;
-
-fn shutter(shutter: RollingShutter) -> (u64, f64) {
-    let direction = match shutter.direction {
-        ShutterDirection::TopToBottom => 1,
-        ShutterDirection::LeftToRight => 2,
-        ShutterDirection::BottomToTop => 3,
-        ShutterDirection::RightToLeft => 4,
-    };
-    (direction, shutter.readout_s)
 }
 
 #[cfg(test)]
