@@ -45,7 +45,8 @@ fn every_scene_of_a_log_has_its_world() {
 #[test]
 fn the_other_formats_stand_under_their_own_names() {
     let folder = tempfile::tempdir().expect("a folder");
-    for (format, file) in [("semantickitti", "sequences/00/poses.txt"), ("mcap", "street.mcap")] {
+    let kitti = ("semantickitti", "sequences/00/poses.txt");
+    for (format, file) in [kitti, ("mcap", "street.mcap"), ("waymo", "street.tfrecord")] {
         let log = folder.path().join(format);
         occlabel(&simulate(format, text(&log), &[])).exits(0);
         let files = files_under(&log);
@@ -78,7 +79,15 @@ fn what_cannot_be_simulated_exits_with_2() {
     refused(&["--set", "sead=7"], "nuscenes").tells(&["street.toml", "sead"]);
     refused(&["--set", "lidar.REAR.rate_hz=5.0"], "nuscenes").tells(&["lidar", "REAR"]);
     refused(&["--scenes", "2"], "mcap").tells(&["--scenes", "nuscenes"]);
+    #[cfg(not(feature = "waymo-v2"))]
+    refused(&[], "waymo-v2").tells(&["the cargo feature `waymo-v2`"]);
     let nowhere = ["simulate", "--world", "nowhere", "--format", "mcap", "--output", text(&out)];
     occlabel(&nowhere).exits(2).tells(&["nowhere", "street, crossing"]);
     assert!(!out.exists());
+    let matrix = "[[250.0, 0.0, 240.0], [0.0, 250.0, 135.0], [0.0, 0.0, 1.0]]";
+    let lens = format!("{{ matrix = {matrix}, distortion = [0.0, 0.0, 0.0, 0.0] }}");
+    let model = format!("camera.CAM_BACK.model={{ kannala-brandt = {lens} }}");
+    let fisheye = ["--set", &model];
+    refused(&fisheye, "waymo").tells(&["camera.CAM_BACK.model", "kannala-brandt"]);
+    assert!(files_under(&out).is_empty());
 }

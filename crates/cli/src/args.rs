@@ -206,7 +206,7 @@ pub(crate) struct SimulateArgs {
     /// Set one key of the world file; any number of times. VALUE is TOML, or else a string.
     #[arg(long = "set", value_name = "key.path=VALUE")]
     pub(crate) settings: Vec<String>,
-    /// Which exposures become image files, with a mask of classes each (mcap: without).
+    /// Which exposures become image files, with a mask of classes each (mcap: without; waymo: none).
     #[arg(long, value_enum, default_value_t = ImagesArg::Keyframes)]
     pub(crate) images: ImagesArg,
     /// nuScenes: so many scenes, each with a seed of its own.
@@ -221,6 +221,10 @@ pub(crate) enum WrittenFormat {
     /// One lidar, no boxes, no images.
     Semantickitti,
     Mcap,
+    /// Waymo Open Dataset, v1: a TFRecord file.
+    Waymo,
+    /// Waymo Open Dataset, v2: Parquet components.
+    WaymoV2,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -6,7 +6,7 @@ use occlabel_core::{Fault, Taxonomy};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{
     Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_mcap,
-    write_nuscenes, write_semantickitti,
+    write_nuscenes, write_semantickitti, write_waymo,
 };
 
 use crate::args::{ImagesArg, SimulateArgs, WrittenFormat};
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
         worlds.iter().map(drive).collect::<Result<_, _>>().map_err(Stop::usage)?;
     let output = Output::create(&args.output).map_err(usage_or_failed)?;
     write_truth(&worlds, &output)?;
-    let (written, last) = write(args, &drives, &taxonomy, &output)?;
+    let (written, last) = write(args, &drives, &taxonomy, &output).map_err(usage_or_failed)?;
     let size = output.finish(&last)?;
     tell(&written, size, console);
     if args.format == WrittenFormat::Nuscenes {
@@ -30,9 +30,11 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
     Ok(Outcome::Complete)
 }
 
-/// An output folder that is taken is a matter of usage; one that cannot be written is not.
+/// An output folder that is taken and a world that a format has no words for are matters of usage; a
+/// folder that cannot be written is not.
 fn usage_or_failed(fault: Fault) -> Stop {
-    if fault.rule == "output" { Stop::usage(fault) } else { fault.into() }
+    let is_usage = ["output", "world", "waymo-v2"].contains(&fault.rule);
+    if is_usage { Stop::usage(fault) } else { fault.into() }
 }
 
 /// Each scene's world, with its text: overrides applied, so that it can be built again from it.
@@ -112,6 +114,14 @@ fn write(
         WrittenFormat::Semantickitti => write_semantickitti(&drives[0], output)
             .map(|(written, last)| (written, last.to_owned())),
         WrittenFormat::Mcap => write_mcap(&drives[0], taxonomy, images, output),
+        WrittenFormat::Waymo => write_waymo(&drives[0], output),
+        #[cfg(feature = "waymo-v2")]
+        WrittenFormat::WaymoV2 => occlabel_simulate::write_waymo_v2(&drives[0], output),
+        #[cfg(not(feature = "waymo-v2"))]
+        WrittenFormat::WaymoV2 => {
+            let expected = "a program built with the cargo feature `waymo-v2`";
+            Err(Fault::new("waymo-v2", "--format waymo-v2", expected, "one without it"))
+        }
     }
 }
 

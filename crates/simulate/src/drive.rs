@@ -94,16 +94,11 @@ impl Drive {
 
     /// The points of a sweep whose returns are known already.
     pub(crate) fn points_of(&self, sweep: usize, returns: &[Return]) -> PointCloud<PointLabel> {
-        let (lidar, key) = (self.lidar(sweep), self.sweeps[sweep]);
-        let sweep_from_world = lidar.world_from_lidar(&self.world, key.time).inverse();
+        let lidar = self.lidar(sweep);
         let together = |a: &Return, b: &Return| a.time == b.time || !lidar.deskew;
         let mut cloud = PointCloud::with_origins(Vec::new());
         for shots in returns.chunk_by(together) {
-            let now_from_then = if shots[0].time == key.time || !lidar.deskew {
-                nalgebra::one()
-            } else {
-                sweep_from_world * lidar.world_from_lidar(&self.world, shots[0].time)
-            };
+            let now_from_then = self.sweep_from_shot(sweep, shots[0].time).unwrap_or_default();
             cloud.origins.push(now_from_then * LIDAR_ORIGIN);
             let origin = (cloud.origins.len() - 1) as u32;
             for found in shots {
@@ -112,6 +107,14 @@ impl Drive {
             }
         }
         cloud
+    }
+
+    /// What moves points of a shot to where the lidar was as their sweep began; none if nothing does.
+    pub(crate) fn sweep_from_shot(&self, sweep: usize, time: Timestamp) -> Option<Pose> {
+        let (lidar, now) = (self.lidar(sweep), self.sweeps[sweep].time);
+        let world_from_lidar = |time| lidar.world_from_lidar(&self.world, time);
+        let moves = lidar.deskew && time != now;
+        moves.then(|| world_from_lidar(now).inverse() * world_from_lidar(time))
     }
 
     /// All exposures of a camera, as logged.

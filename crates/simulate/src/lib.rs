@@ -104,4 +104,8 @@ pub use swing::Swing;
 pub use trajectory::{Place, Trajectory, Waypoint};
 pub use truth::{TrueRays, TruthAt, TruthSettings, dense_ends, keyframe_truth};
 pub use world::World;
-pub use write::{Images, Output, Written, write_mcap, write_nuscenes, write_semantickitti};
+#[cfg(feature = "waymo-v2")]
+pub use write::write_waymo_v2;
+pub use write::{
+    Images, Output, Written, write_mcap, write_nuscenes, write_semantickitti, write_waymo,
+};

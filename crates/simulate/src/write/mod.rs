@@ -11,10 +11,15 @@ mod png;
 mod points;
 mod raw_names;
 mod semantickitti;
+mod waymo;
+mod wire;
 mod written;
 
 pub use files::Output;
 pub use mcap::write_mcap;
 pub use nuscenes::write_nuscenes;
 pub use semantickitti::write_semantickitti;
+pub use waymo::write_waymo;
+#[cfg(feature = "waymo-v2")]
+pub use waymo::write_waymo_v2;
 pub use written::{Images, Written};

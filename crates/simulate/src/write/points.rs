@@ -8,8 +8,12 @@ use crate::{Drive, What};
 /// One point of a log.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoggedPoint<'a> {
-    /// In the frame of its lidar, metres.
+    /// In the frame of its lidar at the sweep's time, metres.
     pub(crate) position_m: Point3<f32>,
+    /// From the lidar at its own time, metres.
+    pub(crate) range_m: f32,
+    /// Number of its shot within the sweep.
+    pub(crate) shot: usize,
     /// Number of its ray within the shot: its beam.
     pub(crate) ring: u16,
     /// When it was measured.
@@ -27,6 +31,8 @@ pub(crate) fn logged_points(drive: &Drive, sweep: usize) -> Vec<LoggedPoint<'_>>
     let measured = returns.into_iter().zip(cloud.positions).zip(cloud.labels);
     let point = |((found, position_m), label): ((crate::Return, Point3<f64>), _)| LoggedPoint {
         position_m: position_m.cast(),
+        range_m: found.position_m.coords.norm() as f32,
+        shot: found.shot,
         ring: found.ring as u16,
         time: found.time,
         label: drive.raw_label(found.hit.what, label).unwrap_or_default(),

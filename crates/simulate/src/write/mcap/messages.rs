@@ -8,7 +8,7 @@ use crate::write::points::LoggedPoint;
 use crate::write::raw_names::RawNames;
 
 use super::WORLD;
-use super::wire::Wire;
+use crate::write::wire::Wire;
 
 /// `parent_from_child` at a time.
 pub(super) fn transform(

@@ -17,7 +17,6 @@
 mod messages;
 mod recorder;
 mod schemas;
-mod wire;
 
 use image::ExtendedColorType;
 use occlabel_core::{Exposure, Fault, Taxonomy, Timestamp};

@@ -12,7 +12,7 @@ use occlabel_core::{Fault, Timestamp};
 use crate::write::files::OutputFile;
 
 use super::schemas::descriptor_set;
-use super::wire::Wire;
+use crate::write::wire::Wire;
 
 /// The writer, with a channel a topic.
 pub(super) struct Recorder {

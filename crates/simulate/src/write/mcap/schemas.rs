@@ -5,7 +5,7 @@
 
 use std::sync::OnceLock;
 
-use super::wire::Wire;
+use crate::write::wire::Wire;
 use Kind::{Bool, Bytes, Double, Enum, Fixed32, Int32, Int64, Message, Text};
 
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@
 
 /// A message that grows field by field.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Wire(Vec<u8>);
+pub(crate) struct Wire(Vec<u8>);
 
 const VARINT: u64 = 0;
 const FIXED64: u64 = 1;
@@ -12,51 +12,64 @@ const LENGTH: u64 = 2;
 const FIXED32: u64 = 5;
 
 impl Wire {
-    pub(super) fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         &self.0
     }
 
-    pub(super) fn integer(mut self, field: u64, value: u64) -> Self {
+    pub(crate) fn integer(mut self, field: u64, value: u64) -> Self {
         self.tag(field, VARINT);
         self.varint(value);
         self
     }
 
-    pub(super) fn fixed32(mut self, field: u64, value: u32) -> Self {
+    pub(crate) fn fixed32(mut self, field: u64, value: u32) -> Self {
         self.tag(field, FIXED32);
         self.0.extend(value.to_le_bytes());
         self
     }
 
-    pub(super) fn double(mut self, field: u64, value: f64) -> Self {
+    pub(crate) fn double(mut self, field: u64, value: f64) -> Self {
         self.tag(field, FIXED64);
         self.0.extend(value.to_le_bytes());
         self
     }
 
     /// A packed list.
-    pub(super) fn doubles(self, field: u64, values: &[f64]) -> Self {
+    pub(crate) fn doubles(self, field: u64, values: &[f64]) -> Self {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         self.data(field, &bytes)
     }
 
-    pub(super) fn text(self, field: u64, text: &str) -> Self {
+    /// A packed list.
+    pub(crate) fn floats(self, field: u64, values: &[f32]) -> Self {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        self.data(field, &bytes)
+    }
+
+    /// A packed list; what is below 0 takes 10 bytes.
+    pub(crate) fn integers(self, field: u64, values: &[i32]) -> Self {
+        let mut packed = Wire::default();
+        values.iter().for_each(|&value| packed.varint(i64::from(value) as u64));
+        self.data(field, &packed.0)
+    }
+
+    pub(crate) fn text(self, field: u64, text: &str) -> Self {
         self.data(field, text.as_bytes())
     }
 
-    pub(super) fn data(mut self, field: u64, bytes: &[u8]) -> Self {
+    pub(crate) fn data(mut self, field: u64, bytes: &[u8]) -> Self {
         self.tag(field, LENGTH);
         self.varint(bytes.len() as u64);
         self.0.extend_from_slice(bytes);
         self
     }
 
-    pub(super) fn message(self, field: u64, message: &Wire) -> Self {
+    pub(crate) fn message(self, field: u64, message: &Wire) -> Self {
         self.data(field, &message.0)
     }
 
     /// A field that is there any number of times.
-    pub(super) fn messages(self, field: u64, messages: impl Iterator<Item = Wire>) -> Self {
+    pub(crate) fn messages(self, field: u64, messages: impl Iterator<Item = Wire>) -> Self {
         messages.fold(self, |wire, message| wire.message(field, &message))
     }
 
@@ -84,5 +97,10 @@ mod tests {
         assert_eq!(Wire::default().text(2, "testing").bytes(), text);
         let inner = Wire::default().integer(1, 150);
         assert_eq!(Wire::default().message(3, &inner).bytes(), [0x1a, 0x03, 0x08, 0x96, 0x01]);
+        let packed = [0x32, 0x06, 0x03, 0x8e, 0x02, 0x9e, 0xa7, 0x05];
+        assert_eq!(Wire::default().integers(6, &[3, 270, 86942]).bytes(), packed);
+        let minus_one = [&[0x0a, 0x0a][..], &[0xff; 9], &[0x01]].concat();
+        assert_eq!(Wire::default().integers(1, &[-1]).bytes(), minus_one);
+        assert_eq!(Wire::default().floats(1, &[1.5]).bytes(), [0x0a, 4, 0, 0, 0xc0, 0x3f]);
     }
 }
