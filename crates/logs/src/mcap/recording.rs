@@ -6,7 +6,8 @@ use std::path::Path;
 use blake3::Hash;
 use occlabel_core::{Fault, Loss, Timestamp};
 
-use super::container::{Container, Contents, Message, MessageAt};
+use super::container::{Container, Message, MessageAt};
+use super::contents::Contents;
 use super::dispatch::{Decoded, decode};
 use super::frames::{Frames, checked_pose};
 use super::messages::{Cloud, Cube, Defect, Header, Link, Optics, RawPose};
@@ -73,7 +74,7 @@ impl Recording {
         options: &McapOptions,
         notes: &mut Notes,
     ) -> Result<Self, Fault> {
-        let mut container = Container::open(root, file)?;
+        let mut container = Container::open(root, file, options.settings.max_record_bytes)?;
         let (contents, cut) = container.contents();
         let mut recording = Self {
             file: file.to_owned(),
@@ -148,6 +149,17 @@ impl Recording {
             }
             Decoded::Picture(picture) => self.pictures.push(picture.header),
         }
+    }
+
+    /// Takes a message of transforms, whatever else is in the file.
+    ///
+    /// # Errors
+    /// Never: what is refused is noted.
+    pub(super) fn take_links(&mut self, message: &Message, notes: &mut Notes) -> Result<(), Fault> {
+        if let Ok(Some(Decoded::Links(links))) = decode(message, false) {
+            self.add_links(message, &links, notes);
+        }
+        Ok(())
     }
 
     fn add_links(&mut self, message: &Message, links: &[Link], notes: &mut Notes) {

@@ -6,17 +6,13 @@ use occlabel_core::{Fault, Loss, McapSettings, Pose, SweepHeader, Timestamp};
 
 use super::container::MessageAt;
 use super::frames::checked_pose;
-use super::layout::{AUTO, FrameRoles};
+use super::layout::FrameRoles;
 use super::recording::{CloudHead, Recording};
 use crate::notes::Notes;
 
-/// The field of points that holds their labels, of those that are there.
+/// The field of points that holds their labels, if it is among those that are there.
 pub(super) fn label_field<'a>(settings: &'a McapSettings, fields: &[String]) -> Option<&'a str> {
-    let name = match settings.label_field.as_str() {
-        AUTO => "label",
-        "none" => return None,
-        named => named,
-    };
+    let name = settings.label_field.as_str();
     fields.iter().any(|field| field == name).then_some(name)
 }
 
