@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use occlabel_core::{BoxTrack, Fault, Keyframe, Scene};
+use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
 use occlabel_labels::{SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile};
 use occlabel_pipeline::MemoryModel;
@@ -60,6 +60,9 @@ impl PlannedScene {
         if !scene.has_point_labels() {
             findings.warn(job.console, name, &no_labels(job));
         }
+        if scene.tracks.is_empty() {
+            findings.warn(job.console, name, &no_boxes());
+        }
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
@@ -111,10 +114,16 @@ fn no_labels(job: &Job) -> Fault {
     Fault::new("no-labels", "point labels", "labels on some sweeps", found)
 }
 
+fn no_boxes() -> Fault {
+    let found = "none: what moves leaves its trail";
+    Fault::new("no-boxes", "boxes", "boxes at some times", found)
+}
+
 /// Records that the reader refused.
 fn lose_refused(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<(), Refused> {
     let faults: Vec<Fault> = scene.refused.iter().map(|refusal| refusal.fault.clone()).collect();
-    lose(job, scene, faults, job.skips(), findings)
+    let is_asked_for = scene.refused.iter().all(|refusal| refusal.loss == Loss::Remainder);
+    lose(job, scene, faults, job.skips() || is_asked_for, findings)
 }
 
 /// Files that are not there, all told at once.

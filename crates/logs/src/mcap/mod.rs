@@ -12,6 +12,10 @@ mod conformance;
 mod container;
 mod contents;
 mod dispatch;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod doors;
+#[cfg(test)]
+mod encoding_tests;
 mod frames;
 mod json;
 mod layout;
@@ -25,6 +29,10 @@ mod resolve;
 mod ros;
 #[cfg(test)]
 mod ros_tests;
+#[cfg(any(test, fuzzing))]
+mod ros_writer;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod samples;
 mod scene;
 mod survey;
 mod sweep_points;

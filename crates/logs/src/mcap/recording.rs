@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use blake3::Hash;
-use occlabel_core::{Fault, Loss, Timestamp};
+use occlabel_core::{Fault, Loss, McapSettings, Timestamp};
 
 use super::container::{Container, Message, MessageAt};
 use super::contents::Contents;
@@ -34,6 +34,8 @@ pub(super) struct Recording {
     pub(super) masks: BTreeMap<String, Vec<u8>>,
     /// When images were taken.
     pub(super) pictures: Vec<Header>,
+    /// Where its file is broken, although it is read.
+    broken: Vec<Fault>,
 }
 
 /// A cloud without its points.
@@ -64,6 +66,12 @@ impl CloudHead {
 }
 
 impl Recording {
+    /// Nothing of a file yet.
+    pub(super) fn new(file: &str, settings: &McapSettings) -> Self {
+        let frames = Frames::new(settings.max_transform_gap_s);
+        Self { file: file.to_owned(), frames, ..Self::default() }
+    }
+
     /// Reads a file below the root.
     ///
     /// # Errors
@@ -76,12 +84,8 @@ impl Recording {
     ) -> Result<Self, Fault> {
         let mut container = Container::open(root, file, options.settings.max_record_bytes)?;
         let (contents, cut) = container.contents();
-        let mut recording = Self {
-            file: file.to_owned(),
-            frames: Frames::new(options.settings.max_transform_gap_s),
-            ..Self::default()
-        };
-        lost(cut.map_or(Ok(()), Err), options, notes)?;
+        let mut recording = Self::new(file, &options.settings);
+        recording.lose(cut.map_or(Ok(()), Err), options, notes)?;
         let first = |purpose| purpose != Purpose::Pictures;
         recording.gather(&mut container, &contents, options, first, notes)?;
         if recording.has_latched_optics() {
@@ -109,7 +113,31 @@ impl Recording {
             Ok(())
         };
         let visited = container.visit(contents, |channel| purpose(channel).is_some(), each);
-        lost(visited, options, notes)
+        self.lose(visited, options, notes)
+    }
+
+    /// What is broken is an error, unless the rest is to be recovered.
+    fn lose(
+        &mut self,
+        result: Result<(), Fault>,
+        options: &McapOptions,
+        notes: &mut Notes,
+    ) -> Result<(), Fault> {
+        match result {
+            Err(fault) if options.recover => {
+                if !self.broken.contains(&fault) {
+                    self.broken.push(fault.clone());
+                    notes.refuse(Loss::Remainder, fault);
+                }
+                Ok(())
+            }
+            result => result,
+        }
+    }
+
+    /// What it costs if there is no pose: behind the end of a broken file there are none.
+    pub(super) fn loss_without_pose(&self, otherwise: Loss) -> Loss {
+        if self.broken.is_empty() { otherwise } else { Loss::Remainder }
     }
 
     /// Whether a camera's optics were told once for all its images.
@@ -193,16 +221,5 @@ impl Recording {
         let MessageAt { block, place } = message.at;
         let record = format!("{}, record {place} of its chunk", message.channel.topic);
         Fault::new(rule, &self.file, defect.expected, defect.found).record(record).offset(block)
-    }
-}
-
-/// What is broken is an error, unless the rest is to be recovered.
-fn lost(result: Result<(), Fault>, options: &McapOptions, notes: &mut Notes) -> Result<(), Fault> {
-    match result {
-        Err(fault) if options.recover => {
-            notes.refuse(Loss::Sweep, fault);
-            Ok(())
-        }
-        result => result,
     }
 }

@@ -6,7 +6,6 @@ use occlabel_core::{Fault, McapSettings};
 
 use super::container::Container;
 use super::dispatch::{Decoded, decode};
-use super::frames::Frames;
 use super::layout::{AUTO, FrameRoles, lidar_names};
 use super::options::{Purpose, purpose};
 use super::recording::{CloudHead, Recording};
@@ -29,11 +28,7 @@ pub(super) fn resolve(root: &Path, file: &str, settings: &McapSettings) -> Resul
     let (contents, cut) = container.contents();
     let reads = |wanted| move |channel: &_| purpose(settings, channel) == Some(wanted);
     let (clouds, broken) = container.first_of_each(&contents, reads(Purpose::Sweeps));
-    let mut recording = Recording {
-        file: file.to_owned(),
-        frames: Frames::new(settings.max_transform_gap_s),
-        ..Recording::default()
-    };
+    let mut recording = Recording::new(file, settings);
     for message in clouds {
         if let Ok(Some(Decoded::Cloud(cloud))) = decode(&message, false) {
             recording.clouds.push(CloudHead::new(&message, cloud));

@@ -25,12 +25,13 @@ pub(super) fn sweep_headers(
     notes: &mut Notes,
 ) -> Vec<SweepHeader> {
     let mut sweeps: Vec<(SweepHeader, MessageAt)> = Vec::new();
+    let loss = recording.loss_without_pose(Loss::Sweep);
     for cloud in distinct(recording, notes) {
         let placed = place(recording, roles, cloud).map_err(|found| {
             let expected = format!("a pose of frame `{}` in `{}`", cloud.header.frame, roles.world);
             fault(recording, cloud, "transform", expected, found)
         });
-        let Some((world_from_ego, ego_from_lidar)) = notes.accept(Loss::Sweep, placed) else {
+        let Some((world_from_ego, ego_from_lidar)) = notes.accept(loss, placed) else {
             continue;
         };
         let header = SweepHeader {

@@ -60,12 +60,7 @@ fn boxes_by_id<'a>(
 ) -> Result<BTreeMap<&'a str, Boxes<'a>>, Fault> {
     let mut by_id: BTreeMap<&str, Boxes<'_>> = BTreeMap::new();
     for cube in &recording.cubes {
-        let boxed = read_box(recording, roles, cube);
-        let boxed = boxed.map_err(|(rule, found)| {
-            let expected = "a box with an id, sides above 0 and a place in the world";
-            fault(recording, cube, rule, expected, found)
-        });
-        let Some(boxed) = notes.accept(Loss::Annotation, boxed) else { continue };
+        let Some(boxed) = accept_box(recording, roles, cube, notes) else { continue };
         let empty = || Boxes { category: &cube.category, boxes: BTreeMap::new() };
         let track = by_id.entry(&cube.track).or_insert_with(empty);
         if track.category != cube.category {
@@ -84,6 +79,24 @@ fn boxes_by_id<'a>(
         }
     }
     Ok(by_id)
+}
+
+fn accept_box(
+    recording: &Recording,
+    roles: &FrameRoles,
+    cube: &Cube,
+    notes: &mut Notes,
+) -> Option<Box3> {
+    let boxed = read_box(recording, roles, cube);
+    let loss = match boxed {
+        Err(("box-pose", _)) => recording.loss_without_pose(Loss::Annotation),
+        _ => Loss::Annotation,
+    };
+    let boxed = boxed.map_err(|(rule, found)| {
+        let expected = "a box with an id, sides above 0 and a place in the world";
+        fault(recording, cube, rule, expected, found)
+    });
+    notes.accept(loss, boxed)
 }
 
 /// A box in world, or the broken rule and what was found.
@@ -127,7 +140,8 @@ fn check_categories(
     let list = unknown.iter().map(|(name, count)| format!("`{name}` of {count} tracks"));
     let (expected, found) = ("box categories of the taxonomy", list.collect::<Vec<_>>().join(", "));
     let fault = Fault::new("unknown-category", &recording.file, expected, found);
-    let hint = "`[reader.mcap.categories]` names those that mean them";
+    let hint =
+        "`reader.mcap.taxonomy` names another taxonomy, `[reader.mcap.categories]` what they mean";
     notes.warn(read.unknown(fault).map_err(|fault| fault.hint(hint))?);
     Ok(())
 }

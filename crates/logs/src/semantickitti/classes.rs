@@ -52,7 +52,7 @@ const NAMES: [(u16, &str); 33] = [
 ///
 /// # Errors
 /// If there is not one label for each point, or the taxonomy does not name a class.
-pub(super) fn decode_labels(
+pub(crate) fn decode_labels(
     bytes: &[u8],
     file: &str,
     count: usize,
