@@ -49,8 +49,9 @@ pub const DOORS: &[Door] = &[
 ];
 
 const DRIVE: &[u8] = include_bytes!("../tests/waymo/fixtures/v1/drive.tfrecord");
-/// 2 x 2 floats: a packed field, and the shape.
-const MATRIX: &[u8] = b"\x0a\x10\0\0\0\0\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\x12\x04\x0a\x02\x02\x02";
+/// 2 x 2 x 1 floats: a packed field, and the shape.
+const MATRIX: &[u8] =
+    b"\x0a\x10\0\0\0\0\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\x12\x05\x0a\x03\x02\x02\x01";
 const TABLE: &[u8] = br#"[ {"token": "a\"]", "size": [1.5, 2]},{"token":"b","list":[{"x":{}}]} ]"#;
 const TEXT: &[u8] = b"1 0 0 1.5 0 1 0 -2e-3 0 0 1 3\n0.103736\n-1 0 0 0 0 1 0 0 0 0 -1 0\n9e8";
 /// Points of a fixed file.

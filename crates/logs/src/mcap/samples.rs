@@ -46,10 +46,16 @@ const LINKS: [Link; 4] = [
 ];
 const POINTS: [([f32; 3], u8, u32); 2] =
     [([1.0, 2.0, 3.0], 7, 0), ([4.0, 5.0, 6.0], 9, 250_000_000)];
-const STRIDE: u32 = 17;
+const STRIDE: u32 = 25;
 /// Name, offset, and type in PointCloud2 and in PackedElementField.
-const FIELDS: [(&str, u32, u8, u8); 5] =
-    [("x", 0, 7, 7), ("y", 4, 7, 7), ("z", 8, 7, 7), ("label", 12, 2, 1), ("offset", 13, 6, 5)];
+const FIELDS: [(&str, u32, u8, u8); 6] = [
+    ("x", 0, 7, 7),
+    ("y", 4, 7, 7),
+    ("z", 8, 7, 7),
+    ("label", 12, 2, 1),
+    ("offset", 13, 6, 5),
+    ("stamp", 17, 8, 8),
+];
 const LENS: [f64; 9] = [500.0, 0.0, 320.0, 0.0, 500.0, 240.0, 0.0, 0.0, 1.0];
 const BENT: [f64; 5] = [0.1, 0.0, 0.0, 0.0, 0.0];
 const CAR: [f64; 3] = [5.0, 0.0, 0.75];
@@ -138,7 +144,9 @@ pub(crate) fn options() -> McapOptions {
 fn cloud_bytes() -> Vec<u8> {
     let point = |([x, y, z], label, offset): &([f32; 3], u8, u32)| {
         let place = [x, y, z].map(|metres| metres.to_le_bytes()).concat();
-        [place, vec![*label], offset.to_le_bytes().to_vec()].concat()
+        let stamp = (LOOK_NS + i64::from(*offset)) as f64 * 1e-9;
+        let (offset, stamp) = (offset.to_le_bytes().to_vec(), stamp.to_le_bytes().to_vec());
+        [place, vec![*label], offset, stamp].concat()
     };
     POINTS.iter().flat_map(point).collect()
 }

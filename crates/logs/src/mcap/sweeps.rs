@@ -87,7 +87,7 @@ fn distinct<'a>(recording: &'a Recording, notes: &mut Notes) -> Vec<&'a CloudHea
         let newest = latest.entry(topic).or_insert(time);
         if time < *newest {
             let (expected, found) =
-                ("times that go on", format!("{} ns before", newest.0 - time.0));
+                ("times that go on", format!("{} ns before", newest.0.saturating_sub(time.0)));
             notes.warn(fault(recording, cloud, "sweep-order", expected.into(), found));
         }
         *newest = time.max(*newest);
