@@ -10,7 +10,9 @@ use occlabel_logs::{
     QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource,
     WaymoLog,
 };
-use occlabel_pipeline::{Autos, Config, Rules, parse_taxonomy, preset, shipped_taxonomy};
+use occlabel_pipeline::{
+    Autos, Config, ReaderTables, Rules, parse_taxonomy, preset, shipped_taxonomy,
+};
 
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
@@ -35,11 +37,7 @@ pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
     check_flags(log).map_err(Stop::usage)?;
     check_input(log).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
-    let mcap = config.reader.mcap.clone();
-    let mut autos = autos(format_defaults(log, &mcap).map_err(usage_or_failed)?);
-    if log.format == Format::Mcap {
-        autos.taxonomy.clone_from(&mcap.taxonomy);
-    }
+    let autos = autos(log, &mut config.reader).map_err(usage_or_failed)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
@@ -49,6 +47,7 @@ pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
         taxonomy,
         keyframes: config.keyframes.clone(),
     };
+    let mcap = config.reader.mcap.clone();
     let source = open_format(log, options, mcap).map_err(usage_or_failed)?;
     Ok(Opened { source, preset, config, taxonomy_hash, rules })
 }
@@ -79,15 +78,23 @@ fn open_format(
     }
 }
 
-/// What the format itself says where the configuration says `"auto"`.
-fn format_defaults(log: &LogArgs, mcap: &McapSettings) -> Result<ReaderDefaults, Fault> {
-    match log.format {
-        Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref()),
-        Format::Waymo => WaymoLog::format_defaults(&log.input),
-        Format::Av2 => Ok(Argoverse2Log::format_defaults()),
-        Format::Semantickitti => Ok(SemanticKittiLog::format_defaults()),
-        Format::Mcap => McapLog::format_defaults(&log.input, mcap),
-    }
+/// What the format itself says where the configuration says `"auto"`; tables of other formats go,
+/// as they decide nothing.
+fn autos(log: &LogArgs, tables: &mut ReaderTables) -> Result<Autos, Fault> {
+    let given = std::mem::take(tables);
+    let defaults = match log.format {
+        Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref())?,
+        Format::Waymo => WaymoLog::format_defaults(&log.input)?,
+        Format::Av2 => Argoverse2Log::format_defaults(),
+        Format::Semantickitti => SemanticKittiLog::format_defaults(),
+        Format::Mcap => {
+            let (defaults, mut mcap) = McapLog::resolve(&log.input, &given.mcap)?;
+            let taxonomy = std::mem::replace(&mut mcap.taxonomy, file_name(&given.mcap.taxonomy));
+            tables.mcap = mcap;
+            return Ok(Autos { taxonomy, ..autos_of(defaults) });
+        }
+    };
+    Ok(autos_of(defaults))
 }
 
 fn nuscenes_options(log: &LogArgs, read: ReadOptions) -> NuScenesOptions {
@@ -213,7 +220,7 @@ fn unknown_as(log: &LogArgs, taxonomy: &Taxonomy) -> Result<Option<ClassId>, Fau
     Ok(Some(class))
 }
 
-fn autos(defaults: ReaderDefaults) -> Autos {
+fn autos_of(defaults: ReaderDefaults) -> Autos {
     Autos {
         ego_box_m: defaults.ego_box_m,
         taxonomy: defaults.taxonomy.to_owned(),

@@ -111,6 +111,8 @@ pub enum Loss {
     Keyframe,
     /// One camera's image at a keyframe, or the camera.
     Camera,
+    /// What stands behind the place where a file is broken: it was asked to be read so.
+    Remainder,
 }
 
 impl Scene {

@@ -20,11 +20,15 @@
 //! [`Fault`]: occlabel_core::Fault
 
 mod argoverse2;
+#[cfg(any(test, fuzzing))]
+pub mod doors;
 mod files;
 mod inventory;
 mod keyframes;
 mod kitti360;
 mod mcap;
+#[cfg(test)]
+mod mutation_tests;
 mod names;
 mod notes;
 mod number_rows;

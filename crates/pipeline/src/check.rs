@@ -1,6 +1,6 @@
 //! What a configuration may say: checked once, at the door.
 
-use occlabel_core::Fault;
+use occlabel_core::{Fault, McapSettings};
 
 use crate::Config;
 use crate::config::EgoBox;
@@ -15,6 +15,7 @@ pub(crate) fn check(config: &Config) -> Result<(), Fault> {
     check_spans(config)?;
     check_distances(config)?;
     check_ego_box(&config.aggregate.ego_box_m)?;
+    check_mcap(&config.reader.mcap)?;
     check_reach(config)
 }
 
@@ -51,6 +52,12 @@ fn check_ego_box(ego_box: &EgoBox) -> Result<(), Fault> {
     let EgoBox::Corners { min, max } = ego_box else { return Ok(()) };
     let is_box = (0..3).all(|a| min[a].is_finite() && max[a].is_finite() && min[a] <= max[a]);
     need("aggregate.ego_box_m", is_box, "finite corners, min <= max", format!("{min:?} {max:?}"))
+}
+
+fn check_mcap(settings: &McapSettings) -> Result<(), Fault> {
+    positive("reader.mcap.time_unit_s", settings.time_unit_s)?;
+    not_negative("reader.mcap.max_transform_gap_s", settings.max_transform_gap_s)?;
+    need("reader.mcap.max_record_bytes", settings.max_record_bytes >= 1, "at least 1", 0)
 }
 
 fn check_reach(config: &Config) -> Result<(), Fault> {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use occlabel_core::{BoxTrack, Fault, Keyframe, Scene};
+use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
 use occlabel_labels::{SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile};
 use occlabel_pipeline::MemoryModel;
@@ -114,7 +114,8 @@ fn chosen_keyframes(job: &Job, scene: &Scene, tokens: &mut BTreeSet<&str>) -> BT
 /// Records that the reader refused.
 fn lose_refused(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<(), Refused> {
     let faults: Vec<Fault> = scene.refused.iter().map(|refusal| refusal.fault.clone()).collect();
-    lose(job, scene, faults, job.skips(), findings)
+    let is_asked_for = scene.refused.iter().all(|refusal| refusal.loss == Loss::Remainder);
+    lose(job, scene, faults, job.skips() || is_asked_for, findings)
 }
 
 /// Files that are not there, all told at once.

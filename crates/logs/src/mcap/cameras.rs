@@ -60,7 +60,7 @@ fn camera(recording: &Recording, optics: &[&Optics]) -> Result<Camera, String> {
 }
 
 /// The model by its name; `mei` and `ocam` are ours.
-fn model(optics: &Optics) -> Result<CameraModel, CameraError> {
+pub(super) fn model(optics: &Optics) -> Result<CameraModel, CameraError> {
     let (numbers, distortion) = (&optics.matrix, &optics.distortion);
     if optics.model == "ocam" {
         return Ok(CameraModel::Ocam(ocam(distortion)?));

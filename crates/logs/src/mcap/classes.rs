@@ -10,6 +10,13 @@ use crate::ReadOptions;
 /// The metadata record that names the numbers.
 const POINT_LABELS: &str = "point_labels";
 
+/// The names of numbers that the log itself gives.
+pub(super) fn label_names(recording: &Recording) -> Option<&BTreeMap<String, String>> {
+    let metadata = recording.contents.metadata.iter();
+    let names = metadata.rev().find(|record| record.name == POINT_LABELS);
+    names.map(|record| &record.metadata)
+}
+
 /// The labels of a sweep's points, as they come up.
 pub(super) struct PointClasses<'a> {
     read: &'a ReadOptions,
@@ -26,10 +33,7 @@ impl<'a> PointClasses<'a> {
         settings: &'a McapSettings,
         recording: &'a Recording,
     ) -> Self {
-        let metadata = recording.contents.metadata.iter();
-        let names = metadata.rev().find(|record| record.name == POINT_LABELS);
-        let names = names.map(|record| &record.metadata);
-        Self { read, settings, names, seen: BTreeMap::new() }
+        Self { read, settings, names: label_names(recording), seen: BTreeMap::new() }
     }
 
     /// What a raw number means; nobody labelled a point whose number means nothing.

@@ -1,62 +1,20 @@
-//! An MCAP file, record by record.
+//! An MCAP file, chunk by chunk.
 //!
 //! The file is stepped through from record to record without reading what they hold: a chunk is
 //! decompressed only if its message index says that it has what is wanted, one at a time. The
 //! summary is not believed: it repeats what the records say. Source: mcap.dev, "Format
 //! Specification".
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use mcap::McapResult;
-use mcap::records::{self, Metadata, Record, SchemaHeader, op};
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::records::{Record, op};
 use occlabel_core::Fault;
 
-use crate::files::{open_file, unreadable};
-
-/// A record or a decompressed chunk longer than this is refused.
-const MAX_RECORD_BYTES: u64 = 1 << 30;
-/// Kind and length.
-const FRAMING_BYTES: u64 = 9;
-
-/// What a file holds, besides its messages.
-#[derive(Debug, Default)]
-pub(super) struct Contents {
-    /// By number.
-    pub(super) channels: BTreeMap<u16, Arc<Channel>>,
-    pub(super) metadata: Vec<Metadata>,
-    /// In the file's order.
-    pub(super) blocks: Vec<Block>,
-    schemas: BTreeMap<u16, Schema>,
-}
-
-/// Messages of one topic and schema.
-#[derive(Debug)]
-pub(super) struct Channel {
-    pub(super) topic: String,
-    pub(super) encoding: String,
-    pub(super) schema: Schema,
-}
-
-/// How messages are laid out.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Schema {
-    pub(super) name: String,
-    pub(super) data: Vec<u8>,
-}
-
-/// A chunk, or a message that stands in none.
-#[derive(Clone, Debug)]
-pub(super) struct Block {
-    /// The record's first byte.
-    pub(super) start: u64,
-    /// The channels that its index names; none if it has no index.
-    pub(super) channels: BTreeSet<u16>,
-}
+use super::chunk;
+use super::contents::{Block, Channel, Contents};
+use super::record_file::RecordFile;
 
 /// A message, and where it stands.
 #[derive(Debug)]
@@ -77,68 +35,62 @@ pub(super) struct MessageAt {
 /// An open file.
 #[derive(Debug)]
 pub(super) struct Container {
-    file: BufReader<File>,
-    name: String,
-    end: u64,
+    file: RecordFile,
 }
 
 impl Container {
-    /// Opens a file below the root.
+    /// Opens a file below the root; a longer record or chunk is refused.
     ///
     /// # Errors
     /// If it cannot be read, or does not begin as MCAP does.
-    pub(super) fn open(root: &Path, name: &str) -> Result<Self, Fault> {
-        let file = open_file(&root.join(name), name)?;
-        let end = file.metadata().map_err(|error| unreadable(name, &error))?.len();
-        let mut container = Self { file: BufReader::new(file), name: name.to_owned(), end };
-        container.check_magic(0, "an MCAP file")?;
-        Ok(container)
+    pub(super) fn open(root: &Path, name: &str, max_record_bytes: u64) -> Result<Self, Fault> {
+        Ok(Self { file: RecordFile::open(root, name, max_record_bytes)? })
     }
 
     /// Steps through the file. With what stands before it comes what is wrong with its end.
     pub(super) fn contents(&mut self) -> (Contents, Option<Fault>) {
         let mut contents = Contents::default();
         let fault = self.step_through(&mut contents).err();
-        let is_known = |number: &u16| contents.channels.contains_key(number);
-        let is_told =
-            |block: &Block| !block.channels.is_empty() && block.channels.iter().all(&is_known);
-        if !contents.blocks.iter().all(is_told) {
+        if let Some(last) = contents.blocks.last_mut().filter(|_| fault.is_some()) {
+            // Its index may be cut off.
+            last.channels.clear();
+        }
+        if !contents.is_indexed() {
             self.define(&mut contents);
         }
-        (contents, fault)
+        (contents, fault.map(recoverable))
     }
 
     /// Looks for channels in all chunks; one that is broken will be told of when it is read.
     fn define(&mut self, contents: &mut Contents) {
         for start in contents.blocks.iter().map(|block| block.start).collect::<Vec<_>>() {
-            let records = self.records(start).unwrap_or_default();
-            records.into_iter().for_each(|record| contents.add(record));
+            self.each_record(start, |_, record| contents.add(record)).unwrap_or_default();
         }
     }
 
     fn step_through(&mut self, contents: &mut Contents) -> Result<(), Fault> {
         let mut at = mcap::MAGIC.len() as u64;
         loop {
-            let (kind, length) = self.framing(at)?;
-            match kind {
+            let span = self.file.span(at)?;
+            match span.kind {
                 op::CHUNK => contents.blocks.push(Block { start: at, channels: BTreeSet::new() }),
                 op::MESSAGE => {
-                    let channels = BTreeSet::from([self.channel_number(at, length)?]);
+                    let channels = BTreeSet::from([self.file.channel_number(span)?]);
                     contents.blocks.push(Block { start: at, channels });
                 }
                 op::MESSAGE_INDEX => {
-                    let channel = self.channel_number(at, length)?;
+                    let channel = self.file.channel_number(span)?;
                     contents.blocks.last_mut().map(|block| block.channels.insert(channel));
                 }
                 op::SCHEMA | op::CHANNEL | op::METADATA => {
-                    let body = self.body(at, length)?;
-                    contents.add(self.parse(at, kind, &body)?);
+                    let body = self.file.body(span)?;
+                    contents.add(self.file.parse(span, &body)?);
                 }
                 _ => {}
             }
-            at += FRAMING_BYTES + length;
-            if kind == op::FOOTER {
-                return self.check_magic(at, "the end of an MCAP file");
+            at = span.end();
+            if span.kind == op::FOOTER {
+                return self.file.check_magic(at, "the end of an MCAP file");
             }
         }
     }
@@ -146,19 +98,14 @@ impl Container {
     /// Hands on, in the file's order, every message of the wanted channels.
     ///
     /// # Errors
-    /// If a block is broken, or `each` fails.
+    /// If a block is broken, of which nothing is handed on, or `each` fails.
     pub(super) fn visit(
         &mut self,
         contents: &Contents,
         wanted: impl Fn(&Channel) -> bool,
         mut each: impl FnMut(Message) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
-        for block in &contents.blocks {
-            let may_hold =
-                |number| contents.channels.get(number).is_some_and(|channel| wanted(channel));
-            if !block.channels.is_empty() && !block.channels.iter().any(may_hold) {
-                continue;
-            }
+        for block in contents.blocks.iter().filter(|block| block.may_hold(contents, &wanted)) {
             for message in self.messages(contents, block.start, &wanted)? {
                 each(message)?;
             }
@@ -166,30 +113,28 @@ impl Container {
         Ok(())
     }
 
-    /// The first message of each wanted channel.
-    ///
-    /// # Errors
-    /// If a block on the way is broken.
+    /// The first message of each wanted topic, and what is wrong with the block that ended the
+    /// search.
     pub(super) fn first_of_each(
         &mut self,
         contents: &Contents,
         wanted: impl Fn(&Channel) -> bool,
-    ) -> Result<Vec<Message>, Fault> {
-        let is_wanted = |number: &u16| contents.channels.get(number).is_some_and(|c| wanted(c));
+    ) -> (Vec<Message>, Option<Fault>) {
         let mut left: BTreeSet<&str> =
             contents.channels.values().filter(|c| wanted(c)).map(|c| c.topic.as_str()).collect();
         let mut first = Vec::new();
         for block in &contents.blocks {
-            let has_new = |number: &u16| {
-                is_wanted(number) && left.contains(contents.channels[number].topic.as_str())
-            };
-            if block.channels.is_empty() || block.channels.iter().any(has_new) {
-                let messages = self.messages(contents, block.start, &wanted)?;
-                first
-                    .extend(messages.into_iter().filter(|m| left.remove(m.channel.topic.as_str())));
+            let is_new = |c: &Channel| wanted(c) && left.contains(c.topic.as_str());
+            if left.is_empty() || !block.may_hold(contents, is_new) {
+                continue;
+            }
+            match self.messages(contents, block.start, &wanted) {
+                Ok(messages) => first
+                    .extend(messages.into_iter().filter(|m| left.remove(m.channel.topic.as_str()))),
+                Err(fault) => return (first, Some(fault)),
             }
         }
-        Ok(first)
+        (first, None)
     }
 
     /// The message at a place.
@@ -200,7 +145,7 @@ impl Container {
         let messages = self.messages(contents, at.block, |_| true)?;
         let found = messages.into_iter().find(|message| message.at == at);
         found.ok_or_else(|| {
-            self.fault(at.block, "mcap-message", "the message that was here", "none")
+            self.file.fault(at.block, "mcap-message", "the message that was here", "none")
         })
     }
 
@@ -210,181 +155,53 @@ impl Container {
         start: u64,
         wanted: impl Fn(&Channel) -> bool,
     ) -> Result<Vec<Message>, Fault> {
-        let mut messages = Vec::new();
-        for (place, record) in self.records(start)?.into_iter().enumerate() {
-            let Record::Message { header, data } = record else { continue };
-            let Some(channel) = contents.channels.get(&header.channel_id) else {
-                let found = format!("a message of channel {}", header.channel_id);
-                return Err(self.fault(
-                    start,
-                    "mcap-channel",
-                    "a channel before its messages",
-                    found,
-                ));
-            };
-            if wanted(channel) {
-                messages.push(Message {
+        let (mut messages, mut unknown) = (Vec::new(), None);
+        self.each_record(start, |place, record| {
+            let Record::Message { header, data } = record else { return };
+            match contents.channels.get(&header.channel_id) {
+                None => unknown = Some(header.channel_id),
+                Some(channel) if wanted(channel) => messages.push(Message {
                     channel: channel.clone(),
                     log_time_ns: header.log_time,
                     data: data.into_owned(),
                     at: MessageAt { block: start, place },
-                });
+                }),
+                Some(_) => {}
             }
-        }
-        Ok(messages)
+        })?;
+        let Some(number) = unknown else { return Ok(messages) };
+        let (expected, found) =
+            ("a channel before its messages", format!("a message of channel {number}"));
+        Err(self.file.fault(start, "mcap-channel", expected, found))
     }
 
-    /// The records of a chunk, or the message itself.
-    fn records(&mut self, start: u64) -> Result<Vec<Record<'static>>, Fault> {
-        let (kind, length) = self.framing(start)?;
-        let body = self.body(start, length)?;
-        let Record::Chunk { header, data } = self.parse(start, kind, &body)? else {
-            return Ok(vec![self.parse(start, kind, &body)?.into_owned()]);
+    /// Hands on the records of a chunk, or the message itself: all of them or none.
+    fn each_record(
+        &mut self,
+        start: u64,
+        mut each: impl FnMut(usize, Record<'_>),
+    ) -> Result<(), Fault> {
+        let span = self.file.span(start)?;
+        let body = self.file.body(span)?;
+        let (header, packed) = match self.file.parse(span, &body)? {
+            Record::Chunk { header, data } => (header, data),
+            record => {
+                each(0, record);
+                return Ok(());
+            }
         };
-        if header.uncompressed_size > MAX_RECORD_BYTES {
-            return Err(self.too_long(start, header.uncompressed_size));
-        }
-        let whole = 40 + header.compression.len() + data.len();
-        let records = chunk_records(&body[..whole], header.uncompressed_size as usize);
-        records.map_err(|error| self.fault(start, "mcap-chunk", "a sound chunk", error.to_string()))
-    }
-
-    /// Kind and length of the record at a byte.
-    fn framing(&mut self, at: u64) -> Result<(u8, u64), Fault> {
-        let left = self.end.saturating_sub(at);
-        let [kind, length @ ..] = self.take::<9>(at)?;
-        let length = u64::from_le_bytes(length);
-        if length > left - FRAMING_BYTES {
-            return Err(self.cut_off(at));
-        }
-        Ok((kind, length))
-    }
-
-    fn channel_number(&mut self, at: u64, length: u64) -> Result<u16, Fault> {
-        match length {
-            0..2 => Err(self.fault(at, "mcap-record", "the number of a channel", "none")),
-            _ => Ok(u16::from_le_bytes(self.take(at + FRAMING_BYTES)?)),
-        }
-    }
-
-    fn body(&mut self, at: u64, length: u64) -> Result<Vec<u8>, Fault> {
-        if length > MAX_RECORD_BYTES {
-            return Err(self.too_long(at, length));
-        }
-        self.seek(at + FRAMING_BYTES)?;
-        let mut body = vec![0; length as usize];
-        self.file.read_exact(&mut body).map_err(|error| unreadable(&self.name, &error))?;
-        Ok(body)
-    }
-
-    fn take<const N: usize>(&mut self, at: u64) -> Result<[u8; N], Fault> {
-        if self.end.saturating_sub(at) < N as u64 {
-            return Err(self.cut_off(at));
-        }
-        self.seek(at)?;
-        let mut bytes = [0; N];
-        self.file.read_exact(&mut bytes).map_err(|error| unreadable(&self.name, &error))?;
-        Ok(bytes)
-    }
-
-    fn seek(&mut self, at: u64) -> Result<(), Fault> {
-        let here = self.file.stream_position().map_err(|error| unreadable(&self.name, &error))?;
-        let near = i64::try_from(at).ok().zip(i64::try_from(here).ok()).map(|(at, here)| at - here);
-        let sought = match near {
-            Some(step) => self.file.seek_relative(step),
-            None => self.file.seek(SeekFrom::Start(at)).map(drop),
-        };
-        sought.map_err(|error| unreadable(&self.name, &error))
-    }
-
-    fn parse<'a>(&self, at: u64, kind: u8, body: &'a [u8]) -> Result<Record<'a>, Fault> {
-        mcap::parse_record(kind, body).map_err(|error| {
-            self.fault(at, "mcap-record", "a record as specified", error.to_string())
-        })
-    }
-
-    fn check_magic(&mut self, at: u64, expected: &str) -> Result<(), Fault> {
-        match self.take::<8>(at) {
-            Ok(magic) if magic == mcap::MAGIC => Ok(()),
-            Ok(_) => Err(self.fault(at, "mcap-magic", expected, "other bytes")),
-            Err(_) => Err(self.fault(at, "mcap-magic", expected, "the end of the file")),
-        }
-    }
-
-    fn cut_off(&self, at: u64) -> Fault {
-        let fault =
-            self.fault(at, "mcap-cut-off", "whole records up to a footer", "the end of the file");
-        fault.hint("`--recover` reads what stands before it")
-    }
-
-    fn too_long(&self, at: u64, bytes: u64) -> Fault {
-        let expected = format!("at most {MAX_RECORD_BYTES} bytes in a record or chunk");
-        self.fault(at, "mcap-length", expected, format!("{bytes}"))
-    }
-
-    fn fault(
-        &self,
-        at: u64,
-        rule: &'static str,
-        expected: impl Into<String>,
-        found: impl Into<String>,
-    ) -> Fault {
-        Fault::new(rule, &self.name, expected, found).offset(at)
+        self.file.check_length(start, header.uncompressed_size)?;
+        let broken =
+            |found| recoverable(self.file.fault(start, "mcap-chunk", "a sound chunk", found));
+        let bytes = chunk::unpack(&header, &packed).map_err(broken)?;
+        chunk::records(&bytes).try_for_each(|record| record.map(drop)).map_err(broken)?;
+        let sound = chunk::records(&bytes).flatten().enumerate();
+        sound.for_each(|(place, record)| each(place, record));
+        Ok(())
     }
 }
 
-/// The records of a chunk whose body this is, without what fills it up; its checksum is verified.
-/// No record in it is believed to be longer than the chunk.
-fn chunk_records(body: &[u8], uncompressed_bytes: usize) -> McapResult<Vec<Record<'static>>> {
-    const ROOM_FOR_BLOCKS: usize = 1 << 18;
-    let options = LinearReaderOptions::default()
-        .with_skip_start_magic(true)
-        .with_skip_end_magic(true)
-        .with_validate_chunk_crcs(true)
-        .with_record_length_limit(uncompressed_bytes.max(ROOM_FOR_BLOCKS));
-    let mut reader = LinearReader::new_with_options(options);
-    let framing = [&[op::CHUNK][..], &(body.len() as u64).to_le_bytes()].concat();
-    let mut source = framing.as_slice().chain(body);
-    let mut records = Vec::new();
-    while let Some(event) = reader.next_event() {
-        match event? {
-            LinearReadEvent::ReadRequest(need) => {
-                let read = source.read(reader.insert(need))?;
-                reader.notify_read(read);
-            }
-            LinearReadEvent::Record { data, opcode } => {
-                records.push(mcap::parse_record(opcode, data)?.into_owned());
-            }
-        }
-    }
-    Ok(records)
-}
-
-impl Contents {
-    /// Takes note of a schema, channel or metadata record; of several of one number the first counts.
-    fn add(&mut self, record: Record<'_>) {
-        match record {
-            Record::Schema { header: SchemaHeader { id, name, .. }, data } => {
-                let schema = || Schema { name, data: data.into_owned() };
-                self.schemas.entry(id).or_insert_with(schema);
-            }
-            Record::Channel(channel) => self.add_channel(channel),
-            Record::Metadata(metadata) => self.metadata.push(metadata),
-            _ => {}
-        }
-    }
-
-    /// A summary may repeat channels without their schemas: such a channel waits for its own record.
-    fn add_channel(&mut self, channel: records::Channel) {
-        let records::Channel { id, schema_id, topic, message_encoding: encoding, .. } = channel;
-        let schema = match schema_id {
-            0 => Schema::default(),
-            _ => match self.schemas.get(&schema_id) {
-                Some(schema) => schema.clone(),
-                None => return,
-            },
-        };
-        let channel = || Arc::new(Channel { topic, encoding, schema });
-        self.channels.entry(id).or_insert_with(channel);
-    }
+/// The fault of a file that is broken, but not all through.
+fn recoverable(fault: Fault) -> Fault {
+    fault.hint("`--recover` reads what stands before it")
 }

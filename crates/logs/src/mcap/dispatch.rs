@@ -2,7 +2,8 @@
 
 use occlabel_core::Timestamp;
 
-use super::container::{Channel, Message};
+use super::container::Message;
+use super::contents::Channel;
 use super::messages::{Boxes, Cloud, Defect, Link, Optics, Picture};
 use super::ros::{Layout, MarkerParts, Reader};
 use super::{json, protobuf, ros};

@@ -5,11 +5,17 @@
 //! nothing knows which it was. docs/mcap.md names every schema and field that is read.
 
 mod cameras;
+mod chunk;
 mod classes;
 #[cfg(test)]
 mod conformance;
 mod container;
+mod contents;
 mod dispatch;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod doors;
+#[cfg(test)]
+mod encoding_tests;
 mod frames;
 mod json;
 mod layout;
@@ -17,10 +23,16 @@ mod messages;
 mod options;
 mod points;
 mod protobuf;
+mod record_file;
 mod recording;
+mod resolve;
 mod ros;
 #[cfg(test)]
 mod ros_tests;
+#[cfg(any(test, fuzzing))]
+mod ros_writer;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod samples;
 mod scene;
 mod survey;
 mod sweep_points;
@@ -37,8 +49,10 @@ use crate::files::unreadable;
 use crate::names::{nearest_names, quoted};
 use crate::{ReaderDefaults, SceneSource, SweepPoints};
 
+use layout::FrameRoles;
 pub use options::{McapOptions, TimeSource};
-use scene::{Loaded, lidars_of};
+use resolve::{Told, resolve};
+use scene::Loaded;
 
 /// A folder of MCAP files.
 #[derive(Debug)]
@@ -68,7 +82,8 @@ impl McapLog {
     pub fn open(root: &Path, options: McapOptions) -> Result<Self, Fault> {
         let files = mcap_files(root)?;
         check_wanted(&options, &files)?;
-        let defaults = Self::format_defaults(root, &options.settings)?;
+        let (defaults, settings) = Self::resolve(root, &options.settings)?;
+        let options = McapOptions { settings, ..options };
         let scene = |file: String| {
             let name = file.strip_suffix(ENDING).unwrap_or(&file).to_owned();
             SceneFile { name, file, loaded: OnceLock::new() }
@@ -78,20 +93,30 @@ impl McapLog {
         Ok(Self { root: root.to_owned(), options, scenes, defaults })
     }
 
-    /// What the log itself says where the configuration says `"auto"`: known before the log is
-    /// opened, at the price of the first chunks of one file.
+    /// What the log itself says where the configuration says `"auto"`, and the settings with that in
+    /// them: known before the log is opened, at the price of one pass over one file. It holds for all
+    /// files. An `"auto"` is left only if no file tells.
     ///
     /// # Errors
     /// If there is no file, or none can be read.
-    pub fn format_defaults(root: &Path, settings: &McapSettings) -> Result<ReaderDefaults, Fault> {
-        let mut fault = None;
+    pub fn resolve(
+        root: &Path,
+        settings: &McapSettings,
+    ) -> Result<(ReaderDefaults, McapSettings), Fault> {
+        let (mut first, mut fault) = (None, None);
         for file in mcap_files(root)? {
-            match lidars_of(root, &file, settings) {
-                Ok(lidars) => return Ok(defaults(&lidars)),
+            match resolve(root, &file, settings) {
+                Ok(Told { lidars, roles: Some(roles) }) => {
+                    let FrameRoles { world: world_frame, ego: ego_frame } = roles;
+                    let settings = McapSettings { world_frame, ego_frame, ..settings.clone() };
+                    return Ok((defaults(&lidars), settings));
+                }
+                Ok(told) => drop(first.get_or_insert(told)),
                 Err(found) => drop(fault.get_or_insert(found)),
             }
         }
-        Err(fault.unwrap_or_else(|| no_files(root)))
+        let first = first.ok_or_else(|| fault.unwrap_or_else(|| no_files(root)))?;
+        Ok((defaults(&first.lidars), settings.clone()))
     }
 
     fn loaded<'a>(&self, scene: &'a SceneFile) -> &'a Result<Loaded, Fault> {

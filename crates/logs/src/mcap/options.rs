@@ -2,7 +2,7 @@
 
 use occlabel_core::McapSettings;
 
-use super::container::Channel;
+use super::contents::Channel;
 use super::dispatch::{Kind, kind};
 use crate::ReadOptions;
 

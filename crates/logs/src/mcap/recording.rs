@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use blake3::Hash;
-use occlabel_core::{Fault, Loss, Timestamp};
+use occlabel_core::{Fault, Loss, McapSettings, Timestamp};
 
-use super::container::{Container, Contents, Message, MessageAt};
+use super::container::{Container, Message, MessageAt};
+use super::contents::Contents;
 use super::dispatch::{Decoded, decode};
 use super::frames::{Frames, checked_pose};
 use super::messages::{Cloud, Cube, Defect, Header, Link, Optics, RawPose};
@@ -33,6 +34,8 @@ pub(super) struct Recording {
     pub(super) masks: BTreeMap<String, Vec<u8>>,
     /// When images were taken.
     pub(super) pictures: Vec<Header>,
+    /// Where its file is broken, although it is read.
+    broken: Vec<Fault>,
 }
 
 /// A cloud without its points.
@@ -65,6 +68,12 @@ impl CloudHead {
 }
 
 impl Recording {
+    /// Nothing of a file yet.
+    pub(super) fn new(file: &str, settings: &McapSettings) -> Self {
+        let frames = Frames::new(settings.max_transform_gap_s);
+        Self { file: file.to_owned(), frames, ..Self::default() }
+    }
+
     /// Reads a file below the root.
     ///
     /// # Errors
@@ -75,14 +84,10 @@ impl Recording {
         options: &McapOptions,
         notes: &mut Notes,
     ) -> Result<Self, Fault> {
-        let mut container = Container::open(root, file)?;
+        let mut container = Container::open(root, file, options.settings.max_record_bytes)?;
         let (contents, cut) = container.contents();
-        let mut recording = Self {
-            file: file.to_owned(),
-            frames: Frames::new(options.settings.max_transform_gap_s),
-            ..Self::default()
-        };
-        lost(cut.map_or(Ok(()), Err), options, notes)?;
+        let mut recording = Self::new(file, &options.settings);
+        recording.lose(cut.map_or(Ok(()), Err), options, notes)?;
         let first = |purpose| purpose != Purpose::Pictures;
         recording.gather(&mut container, &contents, options, first, notes)?;
         if recording.has_latched_optics() {
@@ -110,7 +115,31 @@ impl Recording {
             Ok(())
         };
         let visited = container.visit(contents, |channel| purpose(channel).is_some(), each);
-        lost(visited, options, notes)
+        self.lose(visited, options, notes)
+    }
+
+    /// What is broken is an error, unless the rest is to be recovered.
+    fn lose(
+        &mut self,
+        result: Result<(), Fault>,
+        options: &McapOptions,
+        notes: &mut Notes,
+    ) -> Result<(), Fault> {
+        match result {
+            Err(fault) if options.recover => {
+                if !self.broken.contains(&fault) {
+                    self.broken.push(fault.clone());
+                    notes.refuse(Loss::Remainder, fault);
+                }
+                Ok(())
+            }
+            result => result,
+        }
+    }
+
+    /// What it costs if there is no pose: behind the end of a broken file there are none.
+    pub(super) fn loss_without_pose(&self, otherwise: Loss) -> Loss {
+        if self.broken.is_empty() { otherwise } else { Loss::Remainder }
     }
 
     /// Whether a camera's optics were told once for all its images.
@@ -152,6 +181,17 @@ impl Recording {
         }
     }
 
+    /// Takes a message of transforms, whatever else is in the file.
+    ///
+    /// # Errors
+    /// Never: what is refused is noted.
+    pub(super) fn take_links(&mut self, message: &Message, notes: &mut Notes) -> Result<(), Fault> {
+        if let Ok(Some(Decoded::Links(links))) = decode(message, false) {
+            self.add_links(message, &links, notes);
+        }
+        Ok(())
+    }
+
     fn add_links(&mut self, message: &Message, links: &[Link], notes: &mut Notes) {
         for link in links {
             let defect = |found| Defect::new(format!("a pose of frame `{}`", link.child), found);
@@ -183,16 +223,5 @@ impl Recording {
         let MessageAt { block, place } = message.at;
         let record = format!("{}, record {place} of its chunk", message.channel.topic);
         Fault::new(rule, &self.file, defect.expected, defect.found).record(record).offset(block)
-    }
-}
-
-/// What is broken is an error, unless the rest is to be recovered.
-fn lost(result: Result<(), Fault>, options: &McapOptions, notes: &mut Notes) -> Result<(), Fault> {
-    match result {
-        Err(fault) if options.recover => {
-            notes.refuse(Loss::Sweep, fault);
-            Ok(())
-        }
-        result => result,
     }
 }

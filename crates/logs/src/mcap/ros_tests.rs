@@ -4,65 +4,7 @@ use occlabel_core::Timestamp;
 
 use super::messages::{Boxes, Cloud, Link, NumberKind, Optics, RawPose};
 use super::ros::{self, Layout, MarkerParts, Reader};
-
-/// A message that grows.
-struct Writer {
-    layout: Layout,
-    bytes: Vec<u8>,
-}
-
-impl Writer {
-    fn new(layout: Layout) -> Self {
-        Self { layout, bytes: Vec::new() }
-    }
-
-    fn number<const N: usize>(&mut self, bytes: [u8; N]) -> &mut Self {
-        if self.layout == Layout::Cdr {
-            self.bytes.resize(self.bytes.len().next_multiple_of(N), 0);
-        }
-        self.bytes.extend(bytes);
-        self
-    }
-
-    fn u8(&mut self, value: u8) -> &mut Self {
-        self.number([value])
-    }
-
-    fn u32(&mut self, value: u32) -> &mut Self {
-        self.number(value.to_le_bytes())
-    }
-
-    fn f64s(&mut self, values: &[f64]) -> &mut Self {
-        values.iter().for_each(|value| {
-            self.number(value.to_le_bytes());
-        });
-        self
-    }
-
-    fn text(&mut self, text: &str) -> &mut Self {
-        let zero = usize::from(self.layout == Layout::Cdr);
-        self.u32((text.len() + zero) as u32).bytes.extend(text.bytes());
-        self.bytes.resize(self.bytes.len() + zero, 0);
-        self
-    }
-
-    fn blob(&mut self, bytes: &[u8]) -> &mut Self {
-        self.u32(bytes.len() as u32).bytes.extend(bytes);
-        self
-    }
-
-    fn header(&mut self, frame: &str) -> &mut Self {
-        if self.layout == Layout::Ros1 {
-            self.u32(77);
-        }
-        self.u32(12).u32(34).text(frame)
-    }
-
-    fn finish(&self) -> Vec<u8> {
-        let head: &[u8] = if self.layout == Layout::Cdr { &[0, 1, 0, 0] } else { &[] };
-        [head, &self.bytes].concat()
-    }
-}
+use super::ros_writer::Writer;
 
 const TIME: Timestamp = Timestamp(12_000_000_034);
 const BOTH: [Layout; 2] = [Layout::Cdr, Layout::Ros1];

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use occlabel_core::{Fault, McapSettings, Scene, SweepHeader};
+use occlabel_core::{Fault, Scene, SweepHeader};
 
 use super::cameras::cameras;
 use super::container::Container;
 use super::dispatch::{Decoded, decode};
 use super::layout::{FrameRoles, lidar_names};
-use super::options::{McapOptions, Purpose, TimeSource, purpose};
+use super::options::{McapOptions, TimeSource};
 use super::recording::{CloudHead, Recording};
 use super::sweep_points::sweep_points;
 use super::sweeps::{source_id, sweep_headers};
@@ -81,7 +81,8 @@ impl Loaded {
     ) -> Result<Option<SweepPoints>, Fault> {
         let is_it = |cloud: &&CloudHead| source_id(cloud.at) == sweep.source_id;
         let Some(head) = self.recording.clouds.iter().find(is_it) else { return Ok(None) };
-        let mut container = Container::open(root, &self.recording.file)?;
+        let limit = options.settings.max_record_bytes;
+        let mut container = Container::open(root, &self.recording.file, limit)?;
         let message = container.message(&self.recording.contents, head.at)?;
         let record = format!("{} at {} ns", head.topic, sweep.time.0);
         let place = (self.recording.file.as_str(), record.as_str());
@@ -97,29 +98,4 @@ impl Loaded {
             }
         }
     }
-}
-
-/// The names of a file's lidars.
-///
-/// # Errors
-/// If the file cannot be read, or holds no clouds.
-pub(super) fn lidars_of(
-    root: &Path,
-    file: &str,
-    settings: &McapSettings,
-) -> Result<Vec<String>, Fault> {
-    let mut container = Container::open(root, file)?;
-    let (contents, _) = container.contents();
-    let is_cloud = |channel: &_| purpose(settings, channel) == Some(Purpose::Sweeps);
-    let mut clouds = Vec::new();
-    for message in container.first_of_each(&contents, is_cloud)? {
-        if let Ok(Some(Decoded::Cloud(cloud))) = decode(&message, false) {
-            clouds.push(CloudHead::new(&message, cloud));
-        }
-    }
-    if clouds.is_empty() {
-        let fault = Fault::new("mcap-clouds", file, "messages of point clouds", "none");
-        return Err(fault.hint("`reader.mcap.lidars` limits them to certain topics"));
-    }
-    Ok(lidar_names(&clouds, settings).into_values().collect())
 }

@@ -1,13 +1,14 @@
 //! What a log holds, for those who have to tell the reader what it is for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use occlabel_core::{Fault, McapSettings};
 
+use super::classes::label_names;
 use super::container::Container;
 use super::layout::{FrameRoles, lidar_names};
-use super::options::{McapOptions, purpose};
+use super::options::{McapOptions, Purpose, purpose};
 use super::recording::Recording;
 use super::sweeps::label_field;
 use crate::notes::Notes;
@@ -18,7 +19,7 @@ use crate::notes::Notes;
 /// # Errors
 /// If it cannot be read.
 pub(super) fn survey(root: &Path, file: &str, options: &McapOptions) -> Result<Vec<String>, Fault> {
-    let (contents, _) = Container::open(root, file)?.contents();
+    let (contents, _) = Container::open(root, file, options.settings.max_record_bytes)?.contents();
     let mut lines: Vec<String> = Vec::new();
     for channel in contents.channels.values() {
         let read_as = purpose(&options.settings, channel).map_or("not read", |p| p.name());
@@ -63,5 +64,16 @@ fn filled_in(recording: &Recording, settings: &McapSettings) -> McapSettings {
         let own = || cube.category.clone();
         filled.categories.entry(cube.category.clone()).or_insert_with(own);
     }
+    for (number, name) in label_names(recording).into_iter().flatten() {
+        filled.classes.entry(number.clone()).or_insert_with(|| name.clone());
+    }
+    filled.boxes = box_topics(recording, settings);
     filled
+}
+
+fn box_topics(recording: &Recording, settings: &McapSettings) -> Vec<String> {
+    let channels = recording.contents.channels.values();
+    let boxes = channels.filter(|channel| purpose(settings, channel) == Some(Purpose::Boxes));
+    let topics: BTreeSet<&String> = boxes.map(|channel| &channel.topic).collect();
+    topics.into_iter().cloned().collect()
 }

@@ -6,17 +6,13 @@ use occlabel_core::{Fault, Loss, McapSettings, Pose, SweepHeader, Timestamp};
 
 use super::container::MessageAt;
 use super::frames::checked_pose;
-use super::layout::{AUTO, FrameRoles};
+use super::layout::FrameRoles;
 use super::recording::{CloudHead, Recording};
 use crate::notes::Notes;
 
-/// The field of points that holds their labels, of those that are there.
+/// The field of points that holds their labels, if it is among those that are there.
 pub(super) fn label_field<'a>(settings: &'a McapSettings, fields: &[String]) -> Option<&'a str> {
-    let name = match settings.label_field.as_str() {
-        AUTO => "label",
-        "none" => return None,
-        named => named,
-    };
+    let name = settings.label_field.as_str();
     fields.iter().any(|field| field == name).then_some(name)
 }
 
@@ -29,12 +25,13 @@ pub(super) fn sweep_headers(
     notes: &mut Notes,
 ) -> Vec<SweepHeader> {
     let mut sweeps: Vec<(SweepHeader, MessageAt)> = Vec::new();
+    let loss = recording.loss_without_pose(Loss::Sweep);
     for cloud in distinct(recording, notes) {
         let placed = place(recording, roles, cloud).map_err(|found| {
             let expected = format!("a pose of frame `{}` in `{}`", cloud.header.frame, roles.world);
             fault(recording, cloud, "transform", expected, found)
         });
-        let Some((world_from_ego, ego_from_lidar)) = notes.accept(Loss::Sweep, placed) else {
+        let Some((world_from_ego, ego_from_lidar)) = notes.accept(loss, placed) else {
             continue;
         };
         let header = SweepHeader {
@@ -90,7 +87,7 @@ fn distinct<'a>(recording: &'a Recording, notes: &mut Notes) -> Vec<&'a CloudHea
         let newest = latest.entry(topic).or_insert(time);
         if time < *newest {
             let (expected, found) =
-                ("times that go on", format!("{} ns before", newest.0 - time.0));
+                ("times that go on", format!("{} ns before", newest.0.saturating_sub(time.0)));
             notes.warn(fault(recording, cloud, "sweep-order", expected.into(), found));
         }
         *newest = time.max(*newest);

@@ -27,22 +27,37 @@ pub(super) fn tracks(
     let mut tracks = TrackBoxes::default();
     for cube in &recording.cubes {
         let located = |rule, expected, found| fault(recording, cube, rule, expected, found);
-        let boxed = read_box(recording, roles, cube).map_err(|(rule, found)| {
-            let expected = "a box with an id, sides above 0 and a place in the world";
-            located(rule, expected.into(), found)
-        });
-        let Some(boxed) = notes.accept(Loss::Annotation, boxed) else { continue };
+        let Some(boxed) = accept_box(recording, roles, cube, notes) else { continue };
         let (track, time) = (cube.track.as_str(), cube.header.time);
         if tracks.at(track, time) != Some(&boxed) {
             let category = settings.categories.get(&cube.category).unwrap_or(&cube.category);
             tracks.add(TrackBox { track, category, time, boxed }, notes, located)?;
         }
     }
-    let hint = "`[reader.mcap.categories]` names those that mean them";
+    let hint =
+        "`reader.mcap.taxonomy` names another taxonomy, `[reader.mcap.categories]` what they mean";
     tracks.tracks(read, &recording.file, notes).map_err(|fault| match fault.rule {
         "unknown-category" => fault.hint(hint),
         _ => fault,
     })
+}
+
+fn accept_box(
+    recording: &Recording,
+    roles: &FrameRoles,
+    cube: &Cube,
+    notes: &mut Notes,
+) -> Option<Box3> {
+    let boxed = read_box(recording, roles, cube);
+    let loss = match boxed {
+        Err(("box-pose", _)) => recording.loss_without_pose(Loss::Annotation),
+        _ => Loss::Annotation,
+    };
+    let boxed = boxed.map_err(|(rule, found)| {
+        let expected = "a box with an id, sides above 0 and a place in the world";
+        fault(recording, cube, rule, expected.into(), found)
+    });
+    notes.accept(loss, boxed)
 }
 
 /// A box in world, or the broken rule and what was found.

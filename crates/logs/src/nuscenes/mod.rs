@@ -33,6 +33,13 @@ use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 use crate::files::file_bytes;
 use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
+#[cfg(any(test, fuzzing))]
+pub(crate) use npz::read_data;
+#[cfg(any(test, fuzzing))]
+pub(crate) use optics::decode as decode_mask;
+#[cfg(any(test, fuzzing))]
+pub(crate) use records::Records;
+
 pub use pose::QuaternionOrder;
 
 use label_files::LabelFile;

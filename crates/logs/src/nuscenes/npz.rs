@@ -9,7 +9,7 @@ const MAX_HEADER_BYTES: u64 = 1 << 16;
 
 /// What such a file can hold instead of labels.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum NpzDefect {
+pub(crate) enum NpzDefect {
     /// Another number of labels.
     Count(usize),
     /// No labels at all, and why.
@@ -24,7 +24,7 @@ pub(super) enum NpzDefect {
 ///
 /// # Errors
 /// If the file is no zip, has no such member, or that is no such array.
-pub(super) fn read_data(file: impl Read + Seek, count: usize) -> Result<Vec<u16>, NpzDefect> {
+pub(crate) fn read_data(file: impl Read + Seek, count: usize) -> Result<Vec<u16>, NpzDefect> {
     let mut archive = ZipArchive::new(file).map_err(format)?;
     let mut member = archive.by_name("data.npy").map_err(format)?;
     let header = read_header(&mut member)?;

@@ -129,7 +129,7 @@ fn read_mask(
 }
 
 /// The grey values of a PNG of this size.
-fn decode(bytes: Vec<u8>, width: u32, height: u32) -> Result<Vec<u8>, String> {
+pub(crate) fn decode(bytes: Vec<u8>, width: u32, height: u32) -> Result<Vec<u8>, String> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
     let mut limits = Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(width), Some(height));

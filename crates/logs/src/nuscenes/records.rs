@@ -11,7 +11,7 @@ const MAX_RECORD_BYTES: usize = 1 << 20;
 ///
 /// Only brackets and strings are looked at, so that a row that nobody wants costs next to nothing
 /// and a broken one can be told by its place.
-pub(super) struct Records<R> {
+pub(crate) struct Records<R> {
     reader: R,
     file: String,
     offset: u64,
@@ -20,11 +20,11 @@ pub(super) struct Records<R> {
 }
 
 /// One object of the array, unread.
-pub(super) struct Record<'a> {
+pub(crate) struct Record<'a> {
     /// Where in the file it begins.
-    pub(super) offset: u64,
+    pub(crate) offset: u64,
     /// From `{` to `}`.
-    pub(super) bytes: &'a [u8],
+    pub(crate) bytes: &'a [u8],
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,7 @@ enum Position {
 
 impl<R: BufRead> Records<R> {
     /// The objects of an array; `file` names it in faults.
-    pub(super) fn new(reader: R, file: &str) -> Self {
+    pub(crate) fn new(reader: R, file: &str) -> Self {
         let position = Position::BeforeArray;
         Self { reader, file: file.to_owned(), offset: 0, position, bytes: Vec::new() }
     }
@@ -46,7 +46,7 @@ impl<R: BufRead> Records<R> {
     ///
     /// # Errors
     /// If the file is no array of objects, an object is longer than 1 MiB, or reading fails.
-    pub(super) fn next_record(&mut self) -> Result<Option<Record<'_>>, Fault> {
+    pub(crate) fn next_record(&mut self) -> Result<Option<Record<'_>>, Fault> {
         if !self.find_record()? {
             return Ok(None);
         }

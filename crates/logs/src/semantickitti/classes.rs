@@ -38,6 +38,6 @@ const NAMES: [(u16, &str); 33] = [
 ];
 
 /// The name of a class, if it has one.
-pub(super) fn label_name(class: u16) -> Option<&'static str> {
+pub(crate) fn label_name(class: u16) -> Option<&'static str> {
     NAMES.iter().find(|(number, _)| *number == class).map(|(_, name)| *name)
 }

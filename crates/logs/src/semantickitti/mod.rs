@@ -8,6 +8,9 @@ mod scene;
 mod sequences;
 mod tables;
 
+#[cfg(any(test, fuzzing))]
+pub(crate) use tables::{pose as line_of_pose, time as line_of_time};
+
 use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
@@ -18,7 +21,7 @@ use crate::point_names::{PointNames, decode_labels};
 use crate::points::decode_points;
 use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
-use classes::label_name;
+pub(crate) use classes::label_name;
 use sequences::{Sequence, label_file, sequences};
 
 /// The name of the only lidar.

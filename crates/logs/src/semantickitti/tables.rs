@@ -75,11 +75,11 @@ impl Tables {
     }
 }
 
-fn pose(row: &str) -> Result<Pose, String> {
+pub(crate) fn pose(row: &str) -> Result<Pose, String> {
     pose_from_rows(&numbers(row)?)
 }
 
-fn time(line: &str) -> Result<Timestamp, String> {
+pub(crate) fn time(line: &str) -> Result<Timestamp, String> {
     let [seconds] = numbers(line)?;
     match seconds.abs() < LATEST_S {
         true => Ok(Timestamp((seconds * 1e9).round() as i64)),

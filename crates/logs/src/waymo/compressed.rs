@@ -18,7 +18,7 @@ const SHAPE_BYTES: usize = 256;
 ///
 /// # Errors
 /// What was found, if it is none, or larger than an image of so many `pixels`.
-pub(super) fn floats(
+pub(crate) fn floats(
     compressed: &[u8],
     values: usize,
     pixels: usize,
@@ -37,7 +37,7 @@ pub(super) fn floats(
 ///
 /// # Errors
 /// What was found, if it is none, or larger than an image of so many `pixels`.
-pub(super) fn integers(
+pub(crate) fn integers(
     compressed: &[u8],
     values: usize,
     pixels: usize,

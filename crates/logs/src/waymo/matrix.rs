@@ -5,7 +5,7 @@ pub(super) const MAX_PIXELS: usize = 1 << 22;
 
 /// A matrix whose number of values is that of its shape.
 #[derive(Debug)]
-pub(super) struct Matrix<T> {
+pub(crate) struct Matrix<T> {
     rows: usize,
     columns: usize,
     /// Rows first, the values of a pixel side by side.

@@ -10,7 +10,7 @@ mod classes;
 mod component_images;
 #[cfg(feature = "waymo-v2")]
 mod components;
-mod compressed;
+pub(crate) mod compressed;
 mod frame;
 mod layout;
 mod matrix;

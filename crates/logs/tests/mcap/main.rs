@@ -2,4 +2,5 @@
 //! they are missing.
 
 mod recorded;
+mod sources;
 mod support;

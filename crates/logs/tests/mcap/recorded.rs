@@ -7,12 +7,7 @@ use occlabel_core::{
 use occlabel_logs::{McapOptions, SceneSource, TimeSource};
 use serde_json::Value;
 
-use crate::support::{apart, folder_of, open, options, shared};
-
-fn expected(name: &str) -> Value {
-    let text = std::fs::read_to_string(shared(name).unwrap()).unwrap();
-    serde_json::from_str(&text).unwrap()
-}
+use crate::support::{apart, expected, folder_of, open, options, shared};
 
 fn mean(cloud: &PointCloud<PointLabel>) -> Point3<f64> {
     let sum: Vector3<f64> = cloud.positions.iter().map(|point| point.coords).sum();

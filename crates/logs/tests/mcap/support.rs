@@ -65,6 +65,12 @@ pub(crate) fn shared(name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
+/// What a file's maker says of it.
+pub(crate) fn expected(name: &str) -> serde_json::Value {
+    let text = std::fs::read_to_string(shared(name).unwrap()).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
 /// The largest difference to a 4 x 4 matrix, rows first.
 pub(crate) fn apart(pose: &Pose, matrix: &serde_json::Value) -> f64 {
     let found = pose.to_homogeneous();

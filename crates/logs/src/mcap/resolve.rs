@@ -1,0 +1,53 @@
+//! What a folder of files tells where the settings say `"auto"`.
+
+use std::path::Path;
+
+use occlabel_core::{Fault, McapSettings};
+
+use super::container::Container;
+use super::dispatch::{Decoded, decode};
+use super::layout::{AUTO, FrameRoles, lidar_names};
+use super::options::{Purpose, purpose};
+use super::recording::{CloudHead, Recording};
+use crate::notes::Notes;
+
+/// What one file tells.
+pub(super) struct Told {
+    /// Names.
+    pub(super) lidars: Vec<String>,
+    /// `None` if its frames leave it open.
+    pub(super) roles: Option<FrameRoles>,
+}
+
+/// Reads a file's transforms, and the first cloud of each topic.
+///
+/// # Errors
+/// If it cannot be read, or tells of no clouds.
+pub(super) fn resolve(root: &Path, file: &str, settings: &McapSettings) -> Result<Told, Fault> {
+    let mut container = Container::open(root, file, settings.max_record_bytes)?;
+    let (contents, cut) = container.contents();
+    let reads = |wanted| move |channel: &_| purpose(settings, channel) == Some(wanted);
+    let (clouds, broken) = container.first_of_each(&contents, reads(Purpose::Sweeps));
+    let mut recording = Recording::new(file, settings);
+    for message in clouds {
+        if let Ok(Some(Decoded::Cloud(cloud))) = decode(&message, false) {
+            recording.clouds.push(CloudHead::new(&message, cloud));
+        }
+    }
+    if recording.clouds.is_empty() {
+        return Err(broken.or(cut).unwrap_or_else(|| no_clouds(file)));
+    }
+    if settings.world_frame == AUTO || settings.ego_frame == AUTO {
+        // What is broken or refused here is told of when the scene is read.
+        let each = |message: _| recording.take_links(&message, &mut Notes::default());
+        let _ = container.visit(&contents, reads(Purpose::Transforms), each);
+        recording.frames.finish();
+    }
+    let lidars = lidar_names(&recording.clouds, settings).into_values().collect();
+    Ok(Told { lidars, roles: FrameRoles::find(&recording, settings).ok() })
+}
+
+fn no_clouds(file: &str) -> Fault {
+    let fault = Fault::new("mcap-clouds", file, "messages of point clouds", "none");
+    fault.hint("`reader.mcap.lidars` limits them to certain topics")
+}
