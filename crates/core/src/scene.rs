@@ -111,6 +111,8 @@ pub enum Loss {
     Keyframe,
     /// One camera's image at a keyframe, or the camera.
     Camera,
+    /// What a record says of its neighbours in time: the order of times takes its place.
+    Link,
 }
 
 impl Scene {

@@ -20,7 +20,9 @@
 //! [`Fault`]: occlabel_core::Fault
 
 mod argoverse2;
+mod check;
 mod files;
+mod image_files;
 mod inventory;
 mod keyframes;
 mod mcap;
@@ -37,6 +39,10 @@ mod waymo;
 mod wire;
 
 pub use argoverse2::Argoverse2Log;
+pub use check::{
+    Finding, SceneSurvey, Severity, SweepSurvey, check_poses, sum_unknown_labels, without_stand_in,
+};
+pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use mcap::{McapLog, McapOptions, TimeSource};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
