@@ -61,7 +61,7 @@ impl Report {
             console.result(&format!("{}: {}", printable(name), figures.line()));
         }
         let [errors, warnings, remarks] = self.counts();
-        console.result(&format!("{errors} errors, {warnings} warnings, {remarks} remarks"));
+        console.result(&format!("errors: {errors}, warnings: {warnings}, remarks: {remarks}"));
     }
 
     fn json(&self) -> Value {

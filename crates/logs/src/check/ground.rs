@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use occlabel_core::{Fault, SweepHeader};
 
-use super::plane::{Plane, planes};
+use super::plane::{Plane, planes, scattered};
 use super::rotation::ORDER_HINT;
 
 /// The ground's normal is within this of up, degrees (docs/faults.md 13).
@@ -45,16 +45,25 @@ impl GroundView {
         let eye = sweep.ego_from_lidar * Point3::origin();
         let near = |p: &&Point3<f64>| REACH_M.contains(&(*p - eye).norm());
         let near: Vec<_> = points.iter().filter(near).copied().collect();
-        let stride = near.len().div_ceil(MAX_POINTS).max(1);
-        let points: Vec<_> = near.into_iter().step_by(stride).collect();
-        if points.len() < MIN_POINTS {
+        if near.len() < MIN_POINTS {
             return None;
         }
+        let points = some_of(near);
         let tried: Vec<(Plane, usize)> = planes(&points, eye).collect();
         let world = sweep.world_from_ego.rotation;
         let (ego, level) = evidence(&tried, |normal| *normal)?;
         let (world, _) = evidence(&tried, |normal| world * normal)?;
         Some(Self { level, ego, world })
+    }
+}
+
+/// As many points as are looked at, from all over the cloud. Every n-th of a cloud that is sorted by
+/// beams would be of a few beams.
+fn some_of(points: Vec<Point3<f64>>) -> Vec<Point3<f64>> {
+    let count = points.len() as u64;
+    match points.len() <= MAX_POINTS {
+        true => points,
+        false => (0..MAX_POINTS as u64).map(|i| points[(scattered(i) % count) as usize]).collect(),
     }
 }
 

@@ -34,9 +34,12 @@ impl SweepSurvey {
         cloud: &PointCloud<PointLabel>,
         ego_box: Option<&(Point3<f64>, Point3<f64>)>,
     ) -> Self {
-        let is_finite = |p: &&Point3<f64>| p.coords.iter().all(|metres| metres.is_finite());
-        let points = cloud.positions.iter().filter(is_finite).map(|p| sweep.ego_from_lidar * p);
-        let points: Vec<_> = points.collect();
+        let is_return = |i: &usize| {
+            let p = cloud.positions[*i];
+            p != cloud.origin(*i) && p.coords.iter().all(|metres| metres.is_finite())
+        };
+        let returns = (0..cloud.len()).filter(is_return);
+        let points: Vec<_> = returns.map(|i| sweep.ego_from_lidar * cloud.positions[i]).collect();
         let ground = GroundView::of(sweep, &points);
         let level = ground.and_then(|ground| ground.level);
         let heights_m = level.map(|level| ground_heights(sweep, &points, &level));

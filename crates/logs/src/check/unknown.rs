@@ -20,21 +20,25 @@ pub fn without_stand_in(fault: Fault) -> Fault {
 pub fn sum_unknown_labels(faults: Vec<Fault>) -> Vec<Fault> {
     let is_unknown = |fault: &Fault| fault.rule == UNKNOWN_LABEL;
     let (unknown, mut others): (Vec<Fault>, Vec<Fault>) = faults.into_iter().partition(is_unknown);
-    let mut counts: BTreeMap<&str, u64> = BTreeMap::new();
-    let parts = unknown.iter().flat_map(|fault| fault.found.split(", "));
-    for part in parts {
-        let (label, count) = part.rsplit_once(" of ").unwrap_or((part, ""));
-        let count = count.strip_suffix(" points").and_then(|count| count.parse().ok());
-        *counts.entry(label).or_default() += count.unwrap_or(0_u64);
+    let sweeps = unknown.len();
+    let mut counts: BTreeMap<String, u64> = BTreeMap::new();
+    let mut first = None;
+    for fault in unknown.into_iter().map(without_stand_in) {
+        for (label, count) in fault.found.split(", ").map(label_and_count) {
+            *counts.entry(label.to_owned()).or_default() += count;
+        }
+        first.get_or_insert(fault);
     }
     let told = counts.iter().map(|(label, count)| format!("{label} of {count} points"));
-    let found = told.collect::<Vec<_>>().join(", ");
-    let first = unknown.first().cloned();
-    others.extend(first.map(|first| {
-        let found = format!("{found}, in {} sweeps", unknown.len());
-        Fault { found, ..first }
-    }));
+    let found = format!("{}, in {sweeps} sweeps", told.collect::<Vec<_>>().join(", "));
+    others.extend(first.map(|first| Fault { found, ..first }));
     others
+}
+
+/// `LABEL of COUNT points`; 0 for what is told otherwise.
+fn label_and_count(told: &str) -> (&str, u64) {
+    let (label, count) = told.rsplit_once(" of ").unwrap_or((told, ""));
+    (label, count.strip_suffix(" points").and_then(|count| count.parse().ok()).unwrap_or(0))
 }
 
 #[cfg(test)]
@@ -48,7 +52,7 @@ mod tests {
         let faults = vec![
             fault("a", "7 (ufo) of 3 points, 9 (elk) of 1 points"),
             other.clone(),
-            fault("b", "9 (elk) of 40 points"),
+            fault("b", "9 (elk) of 40 points, taken as `car`"),
         ];
         let summed = sum_unknown_labels(faults);
         let found = "7 (ufo) of 3 points, 9 (elk) of 41 points, in 2 sweeps";
