@@ -50,8 +50,9 @@ impl SceneCheck<'_> {
         let mut findings = self.structure(&scene, &inventory);
         let (survey, odd) = self.sweeps(&scene.sweeps);
         findings.extend(odd);
-        findings.extend(survey.findings(self.name, &scene.sweeps));
-        let thickness_m = survey.ground_thickness_m();
+        let ego_box = self.opened.rules.split.ego_box_m.as_ref();
+        let (geometry, thickness_m) = survey.conclude(self.name, &scene.sweeps, ego_box);
+        findings.extend(geometry);
         let poses = check_poses(&scene, thickness_m);
         findings.extend(poses.into_iter().map(|fault| self.taken(fault)));
         let figures = SceneFigures {

@@ -82,22 +82,26 @@ fn evidence(
 
 /// Whether the ground is level in most sweeps, in the ego frame and in the world.
 pub(super) fn ground_normals(sweeps: &[SweepHeader], views: &[GroundView]) -> Option<Fault> {
-    let frames: [(&str, fn(&GroundView) -> Evidence); 2] =
-        [("the ego frame", |view| view.ego), ("the world", |view| view.world)];
-    let first = sweeps.first()?;
-    frames.into_iter().find_map(|(frame, evidence)| {
-        let median = |number: fn(&Evidence) -> f64| {
-            let mut numbers: Vec<f64> = views.iter().map(|view| number(&evidence(view))).collect();
-            numbers.sort_by(f64::total_cmp);
-            numbers.get(numbers.len() / 2).copied()
-        };
-        let (share, tilt) = (median(|one| one.share)?, median(|one| one.tilt_deg)?);
-        let expected =
-            format!("a ground whose normal is within {LARGEST_SLOPE_DEG} degrees of up in {frame}");
-        let found = format!("{tilt:.1} degrees (median of {} sweeps)", views.len());
-        let fault = || Fault::new("ground-normal", &first.file, expected, found).hint(ORDER_HINT);
-        (share < SMALLEST_SHARE).then(fault)
-    })
+    let place = &sweeps.first()?.file;
+    let ego: Vec<Evidence> = views.iter().map(|view| view.ego).collect();
+    let world: Vec<Evidence> = views.iter().map(|view| view.world).collect();
+    not_level(place, "the ego frame", &ego).or_else(|| not_level(place, "the world", &world))
+}
+
+fn not_level(place: &str, frame: &str, views: &[Evidence]) -> Option<Fault> {
+    let share = median(views.iter().map(|view| view.share))?;
+    let tilt_deg = median(views.iter().map(|view| view.tilt_deg))?;
+    let expected =
+        format!("a ground whose normal is within {LARGEST_SLOPE_DEG} degrees of up in {frame}");
+    let found = format!("{tilt_deg:.1} degrees (median of {} sweeps)", views.len());
+    let fault = || Fault::new("ground-normal", place, expected, found).hint(ORDER_HINT);
+    (share < SMALLEST_SHARE).then(fault)
+}
+
+fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut numbers: Vec<f64> = numbers.collect();
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied()
 }
 
 #[cfg(test)]

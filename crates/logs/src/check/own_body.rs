@@ -80,35 +80,50 @@ impl OwnBody {
         }
     }
 
-    /// What stands still, one fault a lidar.
-    pub(super) fn faults(&self) -> Vec<Fault> {
-        self.lidars.iter().filter_map(|(name, lidar)| lidar.fault(name)).collect()
+    /// What stands still, one fault a lidar; the hint names a box that covers it and `ego_box`.
+    pub(super) fn faults(&self, ego_box: Option<&Corners>) -> Vec<Fault> {
+        self.lidars.iter().filter_map(|(name, lidar)| lidar.fault(name, ego_box)).collect()
     }
 }
 
 impl Lidar {
-    fn fault(&self, name: &str) -> Option<Fault> {
+    fn fault(&self, name: &str, ego_box: Option<&Corners>) -> Option<Fault> {
         let is_still = |sweeps: usize| SHARE.1 * sweeps >= SHARE.0 * self.sweeps;
         let still = self.returns.iter().filter(|(_, (sweeps, _))| is_still(*sweeps));
-        let still: Vec<_> = still.map(|(voxel, (_, points))| (*voxel, *points)).collect();
-        if still.is_empty() || self.sweeps < MIN_SWEEPS {
+        let (voxels, points): (Vec<Voxel>, Vec<usize>) =
+            still.map(|(voxel, (_, points))| (*voxel, *points)).unzip();
+        if self.sweeps < MIN_SWEEPS {
             return None;
         }
-        let points: usize = still.iter().map(|(_, points)| points).sum();
-        let corner = |pick: fn(i64, i64) -> i64, add: i64| {
-            let voxels = still.iter().map(|(voxel, _)| *voxel);
-            let outermost = voxels.reduce(|a, b| [0, 1, 2].map(|axis| pick(a[axis], b[axis])));
-            outermost.unwrap_or_default().map(|at| format!("{:.1}", (at + add) as f64 * VOXEL_M))
-        };
-        let [min, max] = [corner(i64::min, 0), corner(i64::max, 1)].map(|m| m.join(", "));
+        let (min, max) = around(&voxels)?;
+        let points: usize = points.iter().sum();
         let expected = "returns that move in the ego frame while the vehicle drives";
         let found = format!(
-            "{points} points of {} sweeps that stand still, from ({min}) to ({max}) m",
-            self.sweeps
+            "{points} points of {} sweeps that stand still, from ({}) to ({}) m",
+            self.sweeps,
+            told(&min),
+            told(&max)
         );
-        let hint = format!("--set 'aggregate.ego_box_m={{min=[{min}],max=[{max}]}}' drops them");
+        let (min, max) = ego_box.map_or((min, max), |(low, high)| (min.inf(low), max.sup(high)));
+        let corners = format!("{{min=[{}],max=[{}]}}", told(&min), told(&max));
+        let hint = format!("--set 'aggregate.ego_box_m={corners}' drops them");
         Some(Fault::new("ego-returns", name, expected, found).hint(hint))
     }
+}
+
+/// The corners of all these voxels; none without a voxel.
+fn around(voxels: &[Voxel]) -> Option<Corners> {
+    let outermost = |pick: fn(i64, i64) -> i64| {
+        let all = voxels.iter().copied();
+        all.reduce(|a, b| [0, 1, 2].map(|axis| pick(a[axis], b[axis])))
+    };
+    let [min, max] = [outermost(i64::min)?, outermost(i64::max)?.map(|at| at + 1)];
+    let corner = |voxel: Voxel| Point3::from(voxel.map(|at| at as f64 * VOXEL_M));
+    Some((corner(min), corner(max)))
+}
+
+fn told(corner: &Point3<f64>) -> String {
+    corner.iter().map(|metres| format!("{metres:.1}")).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -128,7 +143,7 @@ mod tests {
             let points: Vec<_> = bonnet.iter().copied().chain([post, road]).collect();
             body.add(&sweep, near_returns(&points, &Plane::LEVEL, ego_box));
         }
-        body.faults()
+        body.faults(ego_box)
     }
 
     #[test]
@@ -141,6 +156,14 @@ mod tests {
             "{}",
             told[0]
         );
+    }
+
+    #[test]
+    fn section_13_the_hinted_box_covers_the_old_one_too() {
+        let old = (Point3::new(-1.0, -1.0, 0.0), Point3::new(1.45, 1.0, 2.0));
+        let told = faults(30, 10.0, Some(&old));
+        let hint = told[0].hint.as_deref().unwrap_or_default();
+        assert!(hint.contains("{min=[-1.0, -1.0, 0.0],max=[2.6, 1.0, 2.0]}"), "{hint}");
     }
 
     #[test]

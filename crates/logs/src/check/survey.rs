@@ -57,18 +57,23 @@ impl SceneSurvey {
         self.own_body.add(sweep, survey.near);
     }
 
-    /// How far sweeps differ about the ground's height, metres; none if no two saw the same place.
-    pub fn ground_thickness_m(&self) -> Option<f64> {
-        self.thickness.median_m()
-    }
-
-    /// What the sweeps show of a scene's geometry.
-    pub fn findings(&self, scene: &str, sweeps: &[SweepHeader]) -> Vec<Finding> {
-        let finding = |severity| {
-            move |fault: Fault| Finding { scene: Some(scene.to_owned()), severity, fault }
-        };
-        let wrong = ground_normals(sweeps, &self.grounds).into_iter();
-        let worse = self.own_body.faults().into_iter();
-        wrong.map(finding(Severity::Error)).chain(worse.map(finding(Severity::Warning))).collect()
+    /// What the sweeps show of a scene's geometry, and how far they differ about the ground's height,
+    /// metres, if some of them saw the same place. `ego_box` as for [`SweepSurvey::of`].
+    ///
+    /// Where the ground is not level, nothing else is said: all of it would follow from that.
+    pub fn conclude(
+        &self,
+        scene: &str,
+        sweeps: &[SweepHeader],
+        ego_box: Option<&(Point3<f64>, Point3<f64>)>,
+    ) -> (Vec<Finding>, Option<f64>) {
+        let finding =
+            |severity, fault: Fault| Finding { scene: Some(scene.to_owned()), severity, fault };
+        if let Some(fault) = ground_normals(sweeps, &self.grounds) {
+            return (vec![finding(Severity::Error, fault)], None);
+        }
+        let still = self.own_body.faults(ego_box).into_iter();
+        let findings = still.map(|fault| finding(Severity::Warning, fault));
+        (findings.collect(), self.thickness.median_m())
     }
 }
