@@ -5,7 +5,9 @@ mod support;
 use std::fs;
 
 use serde_json::{Value, json};
-use support::{Label, TestLog, files_under, gts_files, manifest, nano_spec, occlabel, report};
+use support::{
+    Label, TestLog, files_under, gts_files, manifest, nano_spec, occlabel, report, text,
+};
 
 fn label(log: &TestLog) -> Label {
     Label::new(&log.root(), &log.beside("out")).small()
@@ -79,6 +81,24 @@ fn a_dry_run_tells_the_expected_time() {
     let log = TestLog::nano();
     let told = label(&log).with(&["--dry-run"]).run().exits(0).stdout;
     assert!(told.contains("expected time") && told.contains("CPU-seconds"), "{told}");
+}
+
+/// cli.md: `check`: every fault of a log at once, nothing written; the issue: exit 0/1/3, `--json`.
+#[test]
+fn check_tells_one_object_and_its_exit_code_is_that_of_the_worst_finding() {
+    let log = TestLog::nano();
+    let root = log.root();
+    let line = ["check", "--format", "nuscenes", "--input", text(&root), "--json"];
+    let before = files_under(&log.root());
+    let json = |told: &str| serde_json::from_str::<Value>(told).expect("one object");
+    assert_eq!(json(&occlabel(&line).exits(0).stdout)["errors"], 0);
+    assert!(files_under(&log.root()) == before);
+    log.empty(&log.other_files()[0]);
+    assert_eq!(json(&occlabel(&line).exits(3).stdout)["warnings"], 1);
+    log.truncate(&log.other_files()[1], 7);
+    let found = json(&occlabel(&line).exits(1).stdout);
+    let fields = ["rule", "severity", "scene", "file", "record", "expected", "found"];
+    assert!(fields.iter().all(|field| found["findings"][0][field].is_string()), "{found}");
 }
 
 /// Help opens with what the program is.

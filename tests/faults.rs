@@ -467,15 +467,25 @@ fn fault_16_rows_in_any_order_give_the_same_bytes() {
     assert!(gts_files(&log.beside("out")) == gts_files(&clean.output));
 }
 
+/// Chains rows of sample_data in this order.
+fn chain(log: &TestLog, tokens: &[Value]) {
+    log.edit("sample_data", |rows| {
+        for row in rows {
+            let Some(at) = tokens.iter().position(|token| *token == row["token"]) else { continue };
+            let neighbour = |at: Option<usize>| at.and_then(|at| tokens.get(at)).cloned();
+            row["prev"] = neighbour(at.checked_sub(1)).unwrap_or(json!(""));
+            row["next"] = neighbour(Some(at + 1)).unwrap_or(json!(""));
+        }
+    });
+}
+
 #[test]
 fn fault_16_a_chain_that_goes_back_in_time_is_warned_of_and_sorted() {
     let (_log, clean) = untouched(&[]);
     let log = TestLog::nano();
-    let (late, early) = (log.sweeps()[5].clone(), log.sweeps()[1].clone());
-    log.edit("sample_data", |rows| {
-        let row = rows.iter_mut().find(|row| row["token"] == late["token"]);
-        row.expect("a sweep")["next"] = early["token"].clone();
-    });
+    let sweeps = log.sweeps();
+    let late = sweeps[5].clone();
+    chain(&log, &[0, 2, 3, 4, 5, 1, 6, 7, 8].map(|place: usize| sweeps[place]["token"].clone()));
     let label = label(&log);
     label.run().exits(0).tells(&["warning", &field(&late, "token"), "earlier by 0.5 s"]);
     assert_eq!(warnings(&label.output, "time-backwards").len(), 1);

@@ -30,6 +30,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Label a log: the main job.
     Label(Box<LabelArgs>),
+    /// Find every fault of a log at once; nothing is written.
+    Check(Box<CheckArgs>),
     /// Measure how right labels are.
     Quality(Box<QualityArgs>),
     /// Show what a log holds.
@@ -190,6 +192,23 @@ pub(crate) struct InspectArgs {
     pub(crate) log: LogArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit codes: 0 nothing wrong, 1 errors, 2 usage or configuration, 3 warnings."
+)]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    /// Threads. [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) jobs: Option<u16>,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

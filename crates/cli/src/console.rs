@@ -97,7 +97,7 @@ fn fault_line(level: &str, scene: Option<&str>, fault: &Fault) -> String {
 }
 
 /// Escapes control characters in every text: JSON leaves some of them as they are.
-fn escape(line: &mut serde_json::Value) {
+pub(crate) fn escape(line: &mut serde_json::Value) {
     for value in line.as_object_mut().into_iter().flat_map(|fields| fields.values_mut()) {
         if let Some(text) = value.as_str() {
             *value = json!(printable(text));

@@ -33,6 +33,15 @@ pub(crate) struct Opened {
 
 /// Opens the log and resolves the configuration against it.
 pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
+    open_with(log, args, None)
+}
+
+/// The same with a class that stands in for what the taxonomy does not name, if none is given.
+pub(crate) fn open_with(
+    log: &LogArgs,
+    args: &ConfigArgs,
+    stand_in: Option<ClassId>,
+) -> Result<Opened, Stop> {
     let (preset, mut config) = read_config(args).map_err(Stop::usage)?;
     check_flags(log).map_err(Stop::usage)?;
     check_input(log).map_err(Stop::usage)?;
@@ -43,7 +52,7 @@ pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
     let options = ReadOptions {
         scenes,
-        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?,
+        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stand_in),
         taxonomy,
         keyframes: config.keyframes.clone(),
     };

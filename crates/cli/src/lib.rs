@@ -12,6 +12,7 @@
 //! ```
 
 mod args;
+mod check;
 mod completions;
 mod console;
 mod demo;
@@ -89,6 +90,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
     match command {
         Command::Demo(args) => demo::run(args, console),
         Command::Label(args) => label::run(args, console),
+        Command::Check(args) => check::run(args, console),
         Command::Quality(args) => quality::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),

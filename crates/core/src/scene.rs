@@ -113,6 +113,8 @@ pub enum Loss {
     Camera,
     /// What stands behind the place where a file is broken: it was asked to be read so.
     Remainder,
+    /// What a record says of its neighbours in time: the order of times takes its place.
+    Link,
 }
 
 impl Scene {

@@ -196,12 +196,22 @@ mod tests {
 
     /// A file of arrays that all have this header and these values.
     fn npz_with(names: &[&str], header: &str, values: &[u8]) -> tempfile::NamedTempFile {
+        npz_of_version(1, names, header, values)
+    }
+
+    fn npz_of_version(
+        version: u8,
+        names: &[&str],
+        header: &str,
+        values: &[u8],
+    ) -> tempfile::NamedTempFile {
+        let length = (header.len() as u32).to_le_bytes();
+        let length = if version == 1 { &length[..2] } else { &length[..] };
         let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
         let deflated = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
         for name in names {
             zip.start_file(format!("{name}.npy"), deflated).unwrap();
-            zip.write_all(b"\x93NUMPY\x01\x00").unwrap();
-            zip.write_all(&(header.len() as u16).to_le_bytes()).unwrap();
+            zip.write_all(&[b"\x93NUMPY", &[version, 0][..], length].concat()).unwrap();
             zip.write_all(header.as_bytes()).unwrap();
             zip.write_all(values).unwrap();
         }
@@ -240,6 +250,24 @@ mod tests {
         let file = labels_with(&header("|u1", "True", SHAPE), &values);
         let read = read_labels(file.path(), &spec()).unwrap().semantics;
         assert_eq!([*read.at([1, 0, 0]), *read.at([0, 1, 0]), *read.at([0, 0, 1])], [1, 5, 20]);
+    }
+
+    #[test]
+    fn fault_35_versions_2_and_3_are_read_right_and_others_refused() {
+        let (values, header): (Vec<u8>, _) = ((0..60).collect(), header("|u1", "False", SHAPE));
+        let names = ["semantics", "mask_lidar", "mask_camera"];
+        for version in [1, 2, 3] {
+            // NumPy pads headers so that values begin at a multiple of 64 bytes.
+            let padding = 64 - (header.len() + if version == 1 { 10 } else { 12 }) % 64;
+            let header = format!("{}{}\n", header.trim_end(), " ".repeat(padding + 2));
+            let file = npz_of_version(version, &names, &header, &values);
+            let read = read_labels(file.path(), &spec()).unwrap();
+            assert_eq!(read.semantics.values(), values, "version {version}");
+        }
+        for version in [0, 4, 255] {
+            let file = npz_of_version(version, &names, &header, &values);
+            assert_eq!(read_labels(file.path(), &spec()).unwrap_err().rule, "npz-array");
+        }
     }
 
     #[test]

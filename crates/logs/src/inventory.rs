@@ -5,7 +5,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use occlabel_core::Scene;
+use occlabel_core::{Fault, Scene};
 
 use crate::SceneSource;
 
@@ -27,6 +27,14 @@ pub struct MissingFile {
     pub sweep: usize,
     /// Whether a keyframe refers to a sweep that it belongs to.
     pub is_reference: bool,
+}
+
+impl MissingFile {
+    /// That it is missing, as a fault.
+    pub fn fault(&self) -> Fault {
+        let fault = Fault::new("missing-file", &self.file, "a file", "none");
+        if self.is_reference { fault.record("reference sweep of a keyframe") } else { fault }
+    }
 }
 
 impl Inventory {
@@ -55,6 +63,15 @@ impl Inventory {
         }
         self.missing.push(MissingFile { file, sweep, is_reference: false });
         Some(self.missing.len() - 1)
+    }
+
+    /// One fault about all that is missing: how many files, and about how many bytes.
+    pub fn summary(&self) -> Option<Fault> {
+        let missing = self.missing.len();
+        let expected = format!("all {}", missing + self.present.len());
+        let found = format!("{missing} missing, about {} bytes", self.missing_bytes());
+        let fault = Fault::new("missing-files", "files of points and labels", expected, found);
+        (missing > 0).then_some(fault)
     }
 
     /// About how many bytes are missing: each file weighs as the median of the present ones of

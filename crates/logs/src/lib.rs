@@ -20,9 +20,11 @@
 //! [`Fault`]: occlabel_core::Fault
 
 mod argoverse2;
+mod check;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
 mod files;
+mod image_files;
 mod inventory;
 mod keyframes;
 mod kitti360;
@@ -45,6 +47,10 @@ mod waymo;
 mod wire;
 
 pub use argoverse2::Argoverse2Log;
+pub use check::{
+    Finding, SceneSurvey, Severity, SweepSurvey, check_poses, sum_unknown_labels, without_stand_in,
+};
+pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
 pub use mcap::{McapLog, McapOptions, TimeSource};

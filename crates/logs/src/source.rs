@@ -2,6 +2,8 @@
 
 use occlabel_core::{Fault, PointCloud, PointLabel, Scene, SweepHeader};
 
+use crate::ImageFile;
+
 /// A log on disk, as a source of scenes.
 pub trait SceneSource: Sync {
     /// The names of the wanted scenes, in the log's own order.
@@ -20,6 +22,11 @@ pub trait SceneSource: Sync {
     /// If the file cannot be read.
     fn describe(&self, _scene: &str) -> Result<Vec<String>, Fault> {
         Ok(Vec::new())
+    }
+
+    /// The files of a scene's images, where a format has any that nothing else reads.
+    fn image_files(&self, _scene: &str) -> Vec<ImageFile> {
+        Vec::new()
     }
 
     /// Everything of a scene but its points.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
 use occlabel_labels::{SceneRecord, TrackRecord};
-use occlabel_logs::{Inventory, MissingFile};
+use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::MemoryModel;
 use occlabel_simulate::World;
 
@@ -66,6 +66,8 @@ impl PlannedScene {
         for lack in lacks(&scene, &job.opened.config) {
             findings.warn(job.console, name, &lack);
         }
+        let odd = check_poses(&scene, None);
+        odd.iter().for_each(|fault| findings.warn(job.console, name, fault));
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
@@ -127,8 +129,9 @@ fn lose_missing(
 ) -> Result<(), Refused> {
     let may_miss = |file: &MissingFile| job.args.allow_missing_sweeps && !file.is_reference;
     let is_allowed = job.skips() || inventory.missing.iter().all(may_miss);
-    let about = (!inventory.missing.is_empty()).then(|| about_missing(job, inventory));
-    let faults = about.into_iter().chain(inventory.missing.iter().map(missing_fault)).collect();
+    let about = inventory.summary().map(|fault| with_hint(job, fault));
+    let faults =
+        about.into_iter().chain(inventory.missing.iter().map(MissingFile::fault)).collect();
     lose(job, scene, faults, is_allowed, findings)
 }
 
@@ -146,17 +149,8 @@ fn lose(
     Ok(())
 }
 
-fn missing_fault(missing: &MissingFile) -> Fault {
-    let fault = Fault::new("missing-file", &missing.file, "a file", "none");
-    if missing.is_reference { fault.record("reference sweep of a keyframe") } else { fault }
-}
-
-/// One line about all that is missing: how many files, and about how many bytes.
-fn about_missing(job: &Job, inventory: &Inventory) -> Fault {
-    let missing = inventory.missing.len();
-    let expected = format!("all {}", missing + inventory.present.len());
-    let found = format!("{missing} missing, about {} bytes", inventory.missing_bytes());
-    let fault = Fault::new("missing-files", "files of points and labels", expected, found);
+/// How one could do without what is missing.
+fn with_hint(job: &Job, fault: Fault) -> Fault {
     match (job.skips(), job.args.allow_missing_sweeps) {
         (true, _) => fault,
         (false, true) => fault.hint("a keyframe needs its own: --on-error skip leaves it out"),

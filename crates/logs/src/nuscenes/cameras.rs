@@ -7,9 +7,11 @@ use occlabel_core::{
 };
 
 use super::NuScenesLog;
-use super::captures::Capture;
+use super::captures::{Capture, Captures};
 use super::keyframes::Moment;
 use super::optics::camera_of;
+use super::tables::{SceneRows, Tables};
+use crate::ImageFile;
 use crate::notes::Notes;
 
 /// `camera_bits` has one bit for each camera.
@@ -76,6 +78,16 @@ pub(super) fn exposures(
         }
     }
     Ok(exposures)
+}
+
+/// The files of a scene's images; none where the rows cannot be followed.
+pub(super) fn image_files(tables: &Tables, rows: &SceneRows) -> Vec<ImageFile> {
+    let captures = Captures::of_scene(tables, rows).unwrap_or_default();
+    let image = |image: &Capture<'_>| {
+        let size = [image.row.width?, image.row.height?];
+        Some(ImageFile { file: image.row.filename.clone(), size })
+    };
+    captures.cameras.values().flatten().filter_map(image).collect()
 }
 
 impl<'a> SceneCamera<'a> {

@@ -24,6 +24,11 @@ impl<'a> Capture<'a> {
     pub(super) fn order(&self) -> (Timestamp, &'a str, &'a str) {
         (self.time, self.channel, &self.row.filename)
     }
+
+    /// Its row.
+    pub(super) fn row_of(&self) -> &'a Row<SampleData> {
+        self.row
+    }
 }
 
 /// The captures of a scene by kind of sensor.

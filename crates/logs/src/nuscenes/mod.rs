@@ -6,6 +6,7 @@
 
 mod cameras;
 mod captures;
+mod chains;
 mod copies;
 mod keyframes;
 mod label_files;
@@ -15,6 +16,7 @@ mod optics;
 mod pose;
 mod raw_labels;
 mod records;
+mod references;
 mod rows;
 mod scene;
 mod sweep_points;
@@ -31,7 +33,7 @@ use std::path::{Path, PathBuf};
 use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 
 use crate::files::file_bytes;
-use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
+use crate::{ImageFile, PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
 #[cfg(any(test, fuzzing))]
 pub(crate) use npz::read_data;
@@ -97,6 +99,15 @@ impl NuScenesLog {
         defaults(&version::version_folder(root, version)?)
     }
 
+    /// Every token of the tables that is there twice or names nothing, and every table that cannot be
+    /// read: where opening the log tells the first.
+    pub fn reference_faults(root: &Path, version: Option<&str>) -> Vec<Fault> {
+        match version::version_folder(root, version) {
+            Ok(folder) => references::reference_faults(&folder),
+            Err(fault) => vec![fault],
+        }
+    }
+
     /// The file that labels a sweep's points, unless the sweep is to go without.
     fn label_file(&self, sweep: &SweepHeader) -> Option<&LabelFile> {
         let token = Token::from(sweep.source_id.as_str());
@@ -116,6 +127,11 @@ impl SceneSource for NuScenesLog {
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {
         let labels = self.label_file(sweep).map(|labels| labels.file.clone());
         std::iter::once(sweep.file.clone()).chain(labels).collect()
+    }
+
+    fn image_files(&self, scene: &str) -> Vec<ImageFile> {
+        let rows = self.tables.scene(scene);
+        rows.map_or(Vec::new(), |rows| cameras::image_files(&self.tables, rows))
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {

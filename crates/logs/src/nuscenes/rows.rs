@@ -39,6 +39,10 @@ pub(super) struct Sample {
     /// Microseconds.
     pub(super) timestamp: i64,
     pub(super) scene_token: Token,
+    #[serde(default)]
+    pub(super) prev: Option<Token>,
+    #[serde(default)]
+    pub(super) next: Option<Token>,
 }
 
 /// A sweep of a lidar, or an image.
@@ -56,6 +60,8 @@ pub(super) struct SampleData {
     #[serde(default)]
     pub(super) height: Option<u32>,
     #[serde(default)]
+    pub(super) prev: Option<Token>,
+    #[serde(default)]
     pub(super) next: Option<Token>,
 }
 
@@ -68,6 +74,10 @@ pub(super) struct SampleAnnotation {
     /// Width, length, height.
     pub(super) size: [Number; 3],
     pub(super) rotation: [Number; 4],
+    #[serde(default)]
+    pub(super) prev: Option<Token>,
+    #[serde(default)]
+    pub(super) next: Option<Token>,
 }
 
 /// `world_from_ego` at a moment, metres.

@@ -5,6 +5,7 @@ use occlabel_core::{Fault, Keyframe, Loss, Scene, SweepHeader};
 use super::NuScenesLog;
 use super::cameras::{SceneCamera, exposures, scene_cameras};
 use super::captures::Captures;
+use super::chains::report_chains;
 use super::copies::without_copies;
 use super::keyframes::{KeySweeps, Moment, moments, reference_lidar};
 use super::raw_labels::RawLabels;
@@ -20,6 +21,7 @@ pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, 
     }
     let (settings, mut notes) = (&log.options.read.keyframes, Notes::default());
     let captures = Captures::of_scene(&log.tables, rows)?;
+    report_chains(rows, &captures, &mut notes);
     report_jumps(&captures.lidars, &mut notes);
     let sweeps = without_copies(&captures.lidars, &log.root, &mut notes);
     let reference = reference_lidar(settings, &rows.name, &sweeps)?;

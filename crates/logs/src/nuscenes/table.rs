@@ -142,7 +142,7 @@ pub(super) fn read_keyed<T: Table>(
 }
 
 /// Reads fields of a record of table `T`, bare `NaN` and `Infinity` as `null`.
-fn parse<T: Table, F: DeserializeOwned>(
+pub(super) fn parse<T: Table, F: DeserializeOwned>(
     record: &Record<'_>,
     token: Option<&Token>,
 ) -> Result<F, Fault> {

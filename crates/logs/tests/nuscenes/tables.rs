@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::fs;
 
+use occlabel_core::Loss;
 use occlabel_logs::{NuScenesLog, SceneSource};
 use proptest::prelude::*;
 use serde_json::json;
@@ -129,7 +130,43 @@ fn fault_31_a_chain_in_a_ring_ends() {
     let mut log = TinyLog::new();
     log.row("sample_data", "l0")["next"] = json!("l0");
     log.row("sample_data", "l1")["next"] = json!("nowhere");
-    assert_eq!(log.scene().sweeps.len(), 3);
+    let scene = log.scene();
+    assert_eq!(scene.sweeps.len(), 3);
+    let refused = scene.refused.iter().map(|refusal| (refusal.loss, refusal.fault.rule));
+    let refused: Vec<_> = refused.collect();
+    let link = |rule| (Loss::Link, rule);
+    assert_eq!(refused, [link("chain-broken"), link("dangling-token"), link("chain-ring")]);
+}
+
+#[test]
+fn fault_31_long_rings_and_their_tails_are_told_once() {
+    let mut log = TinyLog::new();
+    for (token, prev, next) in [("l0", "", "l1"), ("l1", "l0", "l2"), ("l2", "l1", "l1")] {
+        log.row("sample_data", token)["prev"] = json!(prev);
+        log.row("sample_data", token)["next"] = json!(next);
+    }
+    let scene = log.scene();
+    let told: Vec<_> = scene.refused.iter().map(|refusal| refusal.fault.to_string()).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].contains("whose `prev` names this one") && told[0].contains("is `l0`"));
+    assert!(told[1].contains("(l1, at byte") && told[1].contains("a way back to here"));
+}
+
+#[test]
+fn fault_31_chains_of_samples_images_and_boxes_are_followed_too() {
+    let mut log = TinyLog::new();
+    for (table, token) in [("sample", "s0"), ("sample_data", "c0"), ("sample_annotation", "a0")] {
+        log.row(table, token)["next"] = json!(token);
+    }
+    let scene = log.scene();
+    let rings = scene.refused.iter().filter(|refusal| refusal.fault.rule == "chain-ring");
+    let places: Vec<_> = rings.map(|refusal| refusal.fault.place.as_str()).collect();
+    assert_eq!(places, ["sample.json", "sample_data.json", "sample_annotation.json"]);
+    let mut log = TinyLog::new();
+    log.row("sample_annotation", "a0")["next"] = json!("absent");
+    let scene = log.scene();
+    assert!(scene.refused.is_empty(), "an absent box is fault 21");
+    assert_eq!(scene.warnings[0].rule, "dangling-token");
 }
 
 #[test]

@@ -1,0 +1,39 @@
+//! What can be wrong with a log although every file of it can be read.
+//!
+//! Checks are pure: of a scene's headers ([`check_poses`], cheap), and of what was gathered from its
+//! sweeps, one by one ([`SweepSurvey`], [`SceneSurvey`]). Reading is the caller's. docs/check.md names
+//! every rule.
+
+mod gaps;
+mod ground;
+mod jumps;
+mod level;
+mod neighbours;
+mod own_body;
+mod plane;
+mod rotation;
+mod severity;
+mod survey;
+mod thickness;
+mod unknown;
+
+use occlabel_core::{Fault, Scene};
+
+pub use severity::{Finding, Severity};
+pub use survey::{SceneSurvey, SweepSurvey};
+pub use unknown::{sum_unknown_labels, without_stand_in};
+
+/// What is odd about the poses and times of a scene, found out without reading a sweep: each can be
+/// lived with, but labels are worse for it. Knowing how thick the ground comes out of the sweeps,
+/// metres, tells more.
+pub fn check_poses(scene: &Scene, ground_thickness_m: Option<f64>) -> Vec<Fault> {
+    let mut faults = rotation::rotation_steps(&scene.sweeps);
+    faults.extend(rotation::tilted(&scene.sweeps));
+    faults.extend(jumps::pose_jumps(&scene.sweeps));
+    faults.extend(gaps::sweep_gaps(&scene.sweeps));
+    faults.extend(level::level_world(&scene.sweeps, ground_thickness_m));
+    faults
+}
+
+#[cfg(test)]
+mod test_drive;
