@@ -54,7 +54,9 @@ fn simulated(format: &str) -> String {
 fn measure(format: &str, root: &Path) -> String {
     let (points, files) = read(format, root);
     let megabytes = plain(root, &files) as f64 / 1e6;
-    let plain_s = fastest_s(|| _ = black_box(plain(root, &files)));
+    let plain_s = fastest_s(|| {
+        black_box(plain(root, &files));
+    });
     let read_s = fastest_s(|| drop(black_box(read(format, root))));
     format!(
         "{format:<14} {megabytes:>7.1} {points:>9} {:>12.0} {:>11.0} {:>7.3} {:>11.2}",
