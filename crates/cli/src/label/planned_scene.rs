@@ -57,12 +57,7 @@ impl PlannedScene {
         }
         job.opened.rules.check_labels(&scene).map_err(Refused::Configuration)?;
         scene.warnings.iter().for_each(|fault| findings.warn(job.console, name, fault));
-        if !scene.has_point_labels() {
-            findings.warn(job.console, name, &no_labels(job));
-        }
-        if scene.tracks.is_empty() {
-            findings.warn(job.console, name, &no_boxes());
-        }
+        warn_of_lacks(job, &scene, findings);
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
@@ -114,9 +109,17 @@ fn no_labels(job: &Job) -> Fault {
     Fault::new("no-labels", "point labels", "labels on some sweeps", found)
 }
 
-fn no_boxes() -> Fault {
-    let found = "none: what moves leaves its trail";
-    Fault::new("no-boxes", "boxes", "boxes at some times", found)
+/// Says what a scene does without.
+fn warn_of_lacks(job: &Job, scene: &Scene, findings: &mut Findings) {
+    let no_boxes = || {
+        let found = "none: what moves leaves its trail";
+        Fault::new("no-boxes", "boxes", "boxes at some times", found)
+    };
+    let lacks = [
+        (!scene.has_point_labels()).then(|| no_labels(job)),
+        scene.tracks.is_empty().then(no_boxes),
+    ];
+    lacks.iter().flatten().for_each(|fault| findings.warn(job.console, &scene.name, fault));
 }
 
 /// Records that the reader refused.
