@@ -5,7 +5,8 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use mcap::records::MessageHeader;
+use mcap::read::LinearReader;
+use mcap::records::{MessageHeader, Record};
 use mcap::{Compression, MessageStream, WriteOptions};
 use tempfile::TempDir;
 
@@ -56,6 +57,11 @@ pub(crate) fn rewrite(
     let mut written = Cursor::new(Vec::new());
     let options = WriteOptions::new().chunk_size(Some(chunk_bytes)).compression(compression);
     let mut writer = options.create(&mut written).expect("a writer");
+    for record in LinearReader::new(&bytes).expect("a log") {
+        if let Record::Metadata(metadata) = record.expect("a record") {
+            writer.write_metadata(&metadata).expect("written");
+        }
+    }
     for message in MessageStream::new(&bytes).expect("a log") {
         let mcap::Message { channel, data, log_time, .. } = message.expect("a message");
         let schema = channel.schema.as_ref().expect("a schema");

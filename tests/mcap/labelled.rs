@@ -106,10 +106,10 @@ fn what_the_topics_lack_is_told() {
     let no_camera = ["--set", "reader.mcap.cameras={\"/none\" = \"x\"}"];
     let ended = drive.label("mcap", &log, "a", &[&none[..], &no_camera].concat()).exits(0);
     let ended = ended.tells(&["point labels", "found none"]).tells(&["boxes", "found none"]);
-    ended.tells(&["camera"]);
+    ended.tells(&["calibrations of a camera", "found none"]);
     let rules: Vec<Value> =
         report(&drive.path("a"))["warnings"].as_array().expect("a list").clone();
-    for rule in ["no-labels", "no-boxes"] {
+    for rule in ["no-labels", "no-boxes", "camera-absent"] {
         assert!(rules.iter().any(|warning| warning["rule"] == rule), "no {rule} in {rules:?}");
     }
 }

@@ -27,6 +27,10 @@ pub(super) fn cameras(
         let name = settings.cameras.get(topic).unwrap_or(&optics.header.frame);
         named.entry(name).or_default().push(optics);
     }
+    if named.is_empty() {
+        let expected = "calibrations of a camera";
+        notes.warn(Fault::new("camera-absent", &recording.file, expected, "none"));
+    }
     let (mut cameras, mut exposures) = (Vec::new(), Vec::new());
     for (name, optics) in named {
         let camera = camera(recording, &optics).map_err(|found| {

@@ -203,5 +203,8 @@ impl Container {
 
 /// The fault of a file that is broken, but not all through.
 fn recoverable(fault: Fault) -> Fault {
-    fault.hint("`--recover` reads what stands before it")
+    match fault.hint {
+        None => fault.hint("`--recover` reads what stands before it"),
+        Some(_) => fault,
+    }
 }

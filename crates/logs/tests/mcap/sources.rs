@@ -49,7 +49,7 @@ fn kitti_points_are_those_of_its_files() {
         assert_eq!(cloud.positions, source, "scan {number}");
         points += cloud.len();
     }
-    assert_eq!(points, 483_509);
+    assert_eq!(points, 483_571);
 }
 
 #[test]
@@ -70,8 +70,9 @@ mod argoverse2 {
     use std::collections::BTreeMap;
     use std::fs::File;
 
+    use arrow_array::Array;
     use arrow_array::cast::AsArray;
-    use arrow_array::types::{Float64Type, Int64Type};
+    use arrow_array::types::{Float64Type, Int64Type, UInt16Type, UInt32Type};
     use arrow_ipc::reader::FileReader;
     use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
     use occlabel_core::{BoxTrack, SweepHeader};
@@ -160,8 +161,12 @@ mod argoverse2 {
             let sensors = batch.column_by_name("sensor_name").unwrap().as_string::<i32>();
             let number = |column: &&str, row: usize| {
                 let column = batch.column_by_name(column).unwrap();
-                let whole = column.as_primitive_opt::<Int64Type>().map(|c| c.value(row) as f64);
-                whole.unwrap_or_else(|| column.as_primitive::<Float64Type>().value(row))
+                let sides = column.as_primitive_opt::<UInt16Type>().map(|c| c.value(row).into());
+                sides
+                    .or(column.as_primitive_opt::<UInt32Type>().map(|c| c.value(row).into()))
+                    .or(column.as_primitive_opt::<Int64Type>().map(|c| c.value(row) as f64))
+                    .or(column.as_primitive_opt::<Float64Type>().map(|c| c.value(row)))
+                    .unwrap_or_else(|| panic!("a column of {}", column.data_type()))
             };
             for (row, sensor) in sensors.iter().enumerate() {
                 let numbers = columns.iter().map(|column| number(column, row)).collect();
