@@ -59,6 +59,9 @@ fn next<'a>(bytes: &mut &'a [u8]) -> Result<Record<'a>, String> {
     let cut_off = || "a record beyond its end".to_owned();
     let ([kind, length @ ..], rest) =
         bytes.split_first_chunk::<FRAMING_BYTES>().ok_or_else(cut_off)?;
+    if *kind == 0 {
+        return Err("a record of kind 0".into());
+    }
     let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| cut_off())?;
     let (body, rest) = rest.split_at_checked(length).ok_or_else(cut_off)?;
     *bytes = rest;
@@ -115,7 +118,8 @@ mod tests {
         };
         let whole = [record(0x80, 2, &[1, 2]), record(0x81, 0, &[])].concat();
         assert!(records(&whole).all(|record| record.is_ok()) && records(&whole).count() == 2);
-        for broken in [record(0x80, u64::MAX, &[]), record(0x80, 3, &[1, 2]), vec![0x80, 1]] {
+        let giant = record(0x80, u64::MAX, &[]);
+        for broken in [giant, record(0x80, 3, &[1, 2]), vec![0x80, 1], vec![0; 1 << 10]] {
             let both = [whole.as_slice(), &broken].concat();
             let read: Vec<_> = records(&both).collect();
             assert!(read.len() == 3 && read[2].is_err(), "{read:?}");
