@@ -5,6 +5,8 @@ use std::io::Read;
 use flate2::Crc;
 use mcap::records::{ChunkHeader, Record};
 
+use super::record::parse;
+
 /// A record's kind and length.
 const FRAMING_BYTES: usize = 9;
 
@@ -59,13 +61,10 @@ fn next<'a>(bytes: &mut &'a [u8]) -> Result<Record<'a>, String> {
     let cut_off = || "a record beyond its end".to_owned();
     let ([kind, length @ ..], rest) =
         bytes.split_first_chunk::<FRAMING_BYTES>().ok_or_else(cut_off)?;
-    if *kind == 0 {
-        return Err("a record of kind 0".into());
-    }
     let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| cut_off())?;
     let (body, rest) = rest.split_at_checked(length).ok_or_else(cut_off)?;
     *bytes = rest;
-    mcap::parse_record(*kind, body).map_err(|error| error.to_string())
+    parse(*kind, body)
 }
 
 #[cfg(test)]
