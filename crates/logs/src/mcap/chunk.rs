@@ -3,7 +3,9 @@
 use std::io::Read;
 
 use flate2::Crc;
+use lz4_flex::frame::FrameDecoder;
 use mcap::records::{ChunkHeader, Record};
+use ruzstd::decoding::StreamingDecoder;
 
 use super::record::parse;
 
@@ -20,8 +22,8 @@ pub(super) fn unpack(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, Str
     let declared = header.uncompressed_size;
     let bytes = match header.compression.as_str() {
         "" => packed.to_vec(),
-        "zstd" => grow(zstd::Decoder::with_buffer(packed), declared)?,
-        "lz4" => grow(lz4::Decoder::new(packed), declared)?,
+        "zstd" => unpack_zstd(packed, declared)?,
+        "lz4" => unpack_lz4(packed, declared)?,
         other => return Err(format!("compression `{other}`")),
     };
     if bytes.len() as u64 != declared {
@@ -34,13 +36,27 @@ pub(super) fn unpack(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, Str
     if is_sound { Ok(bytes) } else { Err("another checksum than it says".into()) }
 }
 
-/// Reads to the end, but not much beyond what is declared.
-fn grow<R: Read>(unpacker: std::io::Result<R>, declared: u64) -> Result<Vec<u8>, String> {
+fn unpack_lz4(packed: &[u8], declared: u64) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
-    let limit = declared.saturating_add(1);
-    let read = unpacker.and_then(|unpacker| unpacker.take(limit).read_to_end(&mut bytes));
-    read.map_err(|error| error.to_string())?;
+    grow(&mut bytes, FrameDecoder::new(packed), declared)?;
     Ok(bytes)
+}
+
+/// The bytes of one frame after another.
+fn unpack_zstd(mut packed: &[u8], declared: u64) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    while !packed.is_empty() && bytes.len() as u64 <= declared {
+        let frame = StreamingDecoder::new(&mut packed).map_err(|error| error.to_string())?;
+        grow(&mut bytes, frame, declared)?;
+    }
+    Ok(bytes)
+}
+
+/// Reads to the end, but not much beyond what is declared.
+fn grow(bytes: &mut Vec<u8>, unpacker: impl Read, declared: u64) -> Result<(), String> {
+    let limit = declared.saturating_add(1).saturating_sub(bytes.len() as u64);
+    let read = unpacker.take(limit).read_to_end(bytes);
+    read.map(drop).map_err(|error| error.to_string())
 }
 
 /// The records of a chunk's bytes; the last is an error if they are no records to the end.
@@ -69,6 +85,11 @@ fn next<'a>(bytes: &mut &'a [u8]) -> Result<Record<'a>, String> {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
+
+    use lz4_flex::frame::FrameEncoder;
+    use ruzstd::encoding::{CompressionLevel, compress_to_vec};
+
     use super::*;
 
     fn header(compression: &str, size: u64) -> ChunkHeader {
@@ -83,23 +104,34 @@ mod tests {
     }
 
     fn lz4(bytes: &[u8]) -> Vec<u8> {
-        let mut encoder = lz4::EncoderBuilder::new().build(Vec::new()).unwrap();
-        std::io::Write::write_all(&mut encoder, bytes).unwrap();
-        encoder.finish().0
+        let mut encoder = FrameEncoder::new(Vec::new());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    fn zstd(bytes: &[u8]) -> Vec<u8> {
+        compress_to_vec(bytes, CompressionLevel::Fastest)
     }
 
     #[test]
     fn fault_34_a_chunk_gives_no_more_than_it_declares_and_takes_no_more_than_it_gives() {
         let zeros = vec![0; 1 << 22];
-        let packed =
-            [("zstd", zstd::encode_all(zeros.as_slice(), 3).unwrap()), ("lz4", lz4(&zeros))];
-        for (compression, packed) in packed {
+        for (compression, packed) in [("zstd", zstd(&zeros)), ("lz4", lz4(&zeros))] {
             assert!(packed.len() < 1 << 15, "{compression}: {}", packed.len());
             let unpacked = |size| unpack(&header(compression, size), &packed);
             assert_eq!(unpacked(1 << 22).unwrap().len(), 1 << 22);
             assert!(unpacked(1 << 10).unwrap_err().contains("more than the 1024 bytes"));
             assert!(unpacked(u64::MAX).unwrap_err().contains("fewer"), "{compression}");
         }
+    }
+
+    #[test]
+    fn a_chunk_may_be_of_several_frames() {
+        let frames = [zstd(b"one"), zstd(b""), zstd(b" two")].concat();
+        assert_eq!(unpack(&header("zstd", 7), &frames).unwrap(), b"one two");
+        assert!(unpack(&header("zstd", 3), &frames).unwrap_err().contains("more than"));
+        let cut = &frames[..frames.len() - 2];
+        assert!(unpack(&header("zstd", 7), cut).is_err());
     }
 
     #[test]
