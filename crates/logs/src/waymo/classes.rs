@@ -96,9 +96,7 @@ impl<'a> PointClasses<'a> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use occlabel_core::{ClassId, KeyframeSettings, KeyframeSource, Taxonomy};
+    use occlabel_core::{ClassId, Taxonomy};
 
     use super::*;
 
@@ -106,13 +104,7 @@ mod tests {
         let taxonomy: Taxonomy =
             toml::from_str(include_str!("../../../../configs/taxonomies/occ3d-waymo.toml"))
                 .expect("a taxonomy");
-        let keyframes = KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        };
-        let taxonomy = Arc::new(taxonomy);
-        ReadOptions { scenes: None, taxonomy, keyframes, unknown_as: None }
+        ReadOptions::of(taxonomy)
     }
 
     #[test]
