@@ -106,7 +106,7 @@ fn every_fault_is_told_at_once() {
         let car = rows.iter_mut().find(|row| row["name"] == "vehicle.car");
         car.expect("cars")["name"] = json!("vehicle.hover\u{1b}");
         let road = rows.iter_mut().find(|row| row["name"] == "flat.driveable_surface");
-        road.expect("roads")["name"] = json!("flat.canal");
+        road.expect("roads")["name"] = json!("flat.canal, dry");
     });
     let rules = ["missing-files", "missing-file", "missing-file", "unknown-category"];
     let rules = [&rules[..], &["sweep-length", "sweep-length", "unknown-label"]].concat();
@@ -118,7 +118,10 @@ fn every_fault_is_told_at_once() {
     let categories = found.one("unknown-category")["found"].as_str().expect("text").to_owned();
     assert!(categories.starts_with("`vehicle.hover\\u{1b}` of "), "{categories}");
     let labels = found.one("unknown-label")["found"].as_str().expect("text").to_owned();
-    assert!(labels.contains("(flat.canal) of ") && labels.ends_with(" in 2 sweeps"), "{labels}");
+    assert!(
+        labels.contains("(flat.canal, dry) of ") && labels.ends_with(" in 2 sweeps"),
+        "{labels}"
+    );
     label(&log).run().exits(1);
 }
 

@@ -129,7 +129,7 @@ fn a_recorded_foxglove_log_asks_for_its_taxonomy_and_is_labelled_by_it() {
     let Some(log) = recorded("av2_foxglove.mcap") else { return };
     let drive = Drive::new();
     let ended = drive.label("mcap", log.path(), "a", &[]).exits(1);
-    ended.tells(&["`REGULAR_VEHICLE` of 48 tracks", "reader.mcap.categories", "taxonomy"]);
+    ended.tells(&["`REGULAR_VEHICLE` of 538 boxes", "reader.mcap.categories", "taxonomy"]);
     inspect(log.path(), &[]).exits(1).tells(&["`REGULAR_VEHICLE`"]);
     let own = ["--set", "reader.mcap.taxonomy=argoverse2"];
     drive.label("mcap", log.path(), "b", &own).exits(0).tells_nothing_of("no-boxes");

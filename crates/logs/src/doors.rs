@@ -11,9 +11,10 @@ use flate2::write::ZlibEncoder;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
+use crate::kitti_labels::{class_name, decode_labels};
 use crate::nuscenes::{Records, decode_mask, read_data};
-use crate::point_names::{PointNames, decode_labels};
 use crate::points::{PointColumns, decode_points};
+use crate::raw_labels::RawLabels;
 use crate::semantickitti::{label_name, line_of_pose, line_of_time};
 use crate::waymo::compressed;
 use crate::{ReadOptions, SceneSource, WaymoLog, kitti360, mcap};
@@ -171,8 +172,11 @@ fn png() -> Vec<u8> {
 }
 
 fn kitti_labels(bytes: &[u8]) -> bool {
-    let names = PointNames { options: &read_options(), name: label_name };
-    decode_labels(bytes, "", POINTS / 2).is_ok_and(|raw| names.labels(&raw, "").is_ok())
+    let Ok(raw) = decode_labels(bytes, "", POINTS / 2) else { return false };
+    let options = read_options();
+    let mut labels = RawLabels::new(&options, |raw| class_name(raw, label_name));
+    labels.labels(raw);
+    labels.finish("", &mut Vec::new()).is_ok()
 }
 
 /// Lines of poses and times.

@@ -28,6 +28,7 @@ mod image_files;
 mod inventory;
 mod keyframes;
 mod kitti360;
+mod kitti_labels;
 mod mcap;
 #[cfg(test)]
 mod mutation_tests;
@@ -36,8 +37,8 @@ mod notes;
 mod number_rows;
 mod nuscenes;
 mod options;
-mod point_names;
 mod points;
+mod raw_labels;
 mod sampled_points;
 mod semantickitti;
 mod source;
@@ -47,16 +48,15 @@ mod waymo;
 mod wire;
 
 pub use argoverse2::Argoverse2Log;
-pub use check::{
-    Finding, SceneSurvey, Severity, SweepSurvey, check_poses, sum_unknown_labels, without_stand_in,
-};
+pub use check::{Finding, SceneSurvey, Severity, SweepSurvey, UnknownSum, check_poses};
 pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
 pub use mcap::{McapLog, McapOptions, TimeSource};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
-pub use options::ReadOptions;
+pub use options::{ReadOptions, without_stand_in};
 pub use points::PointColumns;
+pub use raw_labels::UnknownLabels;
 pub use semantickitti::SemanticKittiLog;
 pub use source::{ReaderDefaults, SceneSource, SweepPoints};
 pub use waymo::WaymoLog;

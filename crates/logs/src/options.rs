@@ -5,6 +5,9 @@ use std::sync::Arc;
 
 use occlabel_core::{ClassId, Fault, KeyframeSettings, Meaning, PointLabel, Taxonomy};
 
+/// What stands between unknown names and the class that stands in for them.
+const TAKEN_AS: &str = ", taken as ";
+
 /// What to read of a log, and by which classes.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
@@ -53,6 +56,28 @@ impl ReadOptions {
         };
         let name = self.taxonomy.names.get(class.index());
         let taken_as = name.map_or_else(|| class.0.to_string(), |name| format!("`{name}`"));
-        Ok(Fault { found: format!("{}, taken as {taken_as}", fault.found), ..fault })
+        Ok(Fault { found: format!("{}{TAKEN_AS}{taken_as}", fault.found), ..fault })
+    }
+}
+
+/// A warning of unknown names without what is said about the class that stands in for them.
+pub fn without_stand_in(fault: Fault) -> Fault {
+    let found = fault.found.rsplit_once(TAKEN_AS).map(|(found, _)| found.to_owned());
+    Fault { found: found.unwrap_or(fault.found), ..fault }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raw_labels::tests::options;
+
+    #[test]
+    fn what_stands_in_is_left_out_of_a_warning() {
+        let options = ReadOptions { unknown_as: Some(ClassId(1)), ..options() };
+        let told = Fault::new("unknown-category", "a", "known ones", "`ufo` of 3 boxes");
+        let taken = options.unknown(told.clone()).unwrap();
+        assert_eq!(taken.found, "`ufo` of 3 boxes, taken as `vehicle`");
+        assert_eq!(without_stand_in(taken), told);
+        assert_eq!(without_stand_in(told.clone()), told);
     }
 }

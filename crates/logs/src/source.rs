@@ -2,7 +2,7 @@
 
 use occlabel_core::{Fault, PointCloud, PointLabel, Scene, SweepHeader};
 
-use crate::ImageFile;
+use crate::{ImageFile, UnknownLabels};
 
 /// A log on disk, as a source of scenes.
 pub trait SceneSource: Sync {
@@ -57,6 +57,16 @@ pub struct SweepPoints {
     pub cloud: PointCloud<PointLabel>,
     /// What is odd but can be lived with.
     pub warnings: Vec<Fault>,
+    /// Raw labels that the taxonomy does not name, of which a warning tells.
+    pub unknown: UnknownLabels,
+}
+
+impl SweepPoints {
+    /// The same with every warning located.
+    pub(crate) fn located(mut self, locate: impl Fn(Fault) -> Fault) -> Self {
+        self.warnings = self.warnings.into_iter().map(locate).collect();
+        self
+    }
 }
 
 /// A format's own settings.

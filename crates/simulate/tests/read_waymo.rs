@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use nalgebra::Point3;
-use occlabel_core::{ClassId, PointCloud, PointLabel, Scene, SweepHeader, Taxonomy};
+use occlabel_core::{PointCloud, PointLabel, Scene, SweepHeader, Taxonomy};
 use occlabel_logs::{ReadOptions, SceneSource, WaymoLog};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{Drive, Output, World, world_text_with, write_waymo};
@@ -84,11 +84,12 @@ fn places((sweep, cloud): &Cloud) -> Vec<Point3<f64>> {
     cloud.positions.iter().map(|point| sweep.ego_from_lidar * point).collect()
 }
 
-/// What the format says of a label: it has no points to be ignored, only undefined ones.
+/// What the format says of a label: it has no points to be ignored, only undefined ones, which
+/// nobody labelled.
 fn told(label: PointLabel, is_labelled: bool) -> PointLabel {
     match label {
         _ if !is_labelled => PointLabel::Unlabelled,
-        PointLabel::Ignored => PointLabel::Class(ClassId(0)),
+        PointLabel::Ignored => PointLabel::Unlabelled,
         label => label,
     }
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use occlabel_core::{Fault, Scene, SweepHeader};
 use occlabel_logs::{
-    Finding, Inventory, MissingFile, SceneSurvey, Severity, SweepSurvey, check_images, check_poses,
-    sum_unknown_labels, without_stand_in,
+    Finding, Inventory, MissingFile, SceneSurvey, Severity, SweepSurvey, UnknownLabels, UnknownSum,
+    check_images, check_poses, without_stand_in,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub(super) struct SceneFigures {
 }
 
 /// What is known of a sweep after a look at it.
-type Look = Result<(SweepSurvey, Vec<Fault>), Fault>;
+type Look = Result<(SweepSurvey, UnknownLabels, Vec<Fault>), Fault>;
 
 impl SceneCheck<'_> {
     /// Everything that is wrong with the scene.
@@ -73,7 +73,7 @@ impl SceneCheck<'_> {
         let unlabelled = self.opened.rules.check_labels(scene).err();
         let errors = refused.chain(missing).chain(unlabelled);
         let images = check_images(self.root, &self.opened.source.image_files(self.name));
-        let odd = scene.warnings.iter().cloned().chain(images);
+        let odd = scene.warnings.iter().map(|fault| self.told(fault)).chain(images);
         let none = (!scene.has_point_labels()).then(|| no_labels(scene));
         let errors = errors.map(|fault| self.finding(Severity::Error, fault));
         errors.chain(odd.chain(none).map(|fault| self.taken(fault))).collect()
@@ -81,14 +81,15 @@ impl SceneCheck<'_> {
 
     /// What the sweeps show, and what is wrong with each.
     fn sweeps(&self, sweeps: &[SweepHeader]) -> (SceneSurvey, Vec<Finding>) {
-        let (mut survey, mut taken, mut refused) = (SceneSurvey::default(), Vec::new(), Vec::new());
+        let (mut survey, mut unknown) = (SceneSurvey::default(), UnknownSum::default());
+        let (mut taken, mut refused) = (Vec::new(), Vec::new());
         for some in sweeps.chunks(SWEEPS_AT_ONCE) {
             let looks: Vec<Look> = some.par_iter().map(|sweep| self.look(sweep)).collect();
             for (sweep, look) in some.iter().zip(looks) {
                 match look {
-                    Ok((one, warnings)) => {
+                    Ok((one, labels, warnings)) => {
                         survey.add(sweep, one);
-                        taken.extend(warnings);
+                        taken.extend(unknown.add(labels, warnings));
                     }
                     Err(fault) => refused.push(fault),
                 }
@@ -97,30 +98,33 @@ impl SceneCheck<'_> {
         // Those were all told at once.
         refused.retain(|fault| fault.rule != "missing-file");
         let refused = refused.into_iter().map(|fault| self.finding(Severity::Error, fault));
-        let taken = sum_unknown_labels(taken.into_iter().map(|fault| self.told(fault)).collect());
-        (survey, refused.chain(taken.into_iter().map(|fault| self.taken(fault))).collect())
+        let taken = taken.into_iter().chain(unknown.fault()).map(|fault| self.taken(fault));
+        (survey, refused.chain(taken).collect())
     }
 
     fn look(&self, sweep: &SweepHeader) -> Look {
         let points = self.opened.source.read_sweep(sweep)?;
         let ego_box = self.opened.rules.split.ego_box_m.as_ref();
-        Ok((SweepSurvey::of(sweep, &points.cloud, ego_box), points.warnings))
+        let survey = SweepSurvey::of(sweep, &points.cloud, ego_box);
+        Ok((survey, points.unknown, points.warnings))
     }
 
     /// Something that the reader took: an error if it took it only for the check's sake.
     fn taken(&self, fault: Fault) -> Finding {
-        let severity = match self.is_refused(&fault) {
-            true => Severity::Error,
-            false => Severity::of_warning(fault.rule),
-        };
-        self.finding(severity, self.told(fault))
+        match self.is_refused(&fault) {
+            true => {
+                let fault = fault.hint("`--unknown-as CLASS` gives it a class");
+                self.finding(Severity::Error, fault)
+            }
+            false => self.finding(Severity::of_warning(fault.rule), fault),
+        }
     }
 
-    /// The fault as `label` would tell it.
-    fn told(&self, fault: Fault) -> Fault {
-        match self.is_refused(&fault) {
-            true => without_stand_in(fault).hint("`--unknown-as CLASS` gives it a class"),
-            false => fault,
+    /// A scene's warning as `label` would tell it.
+    fn told(&self, fault: &Fault) -> Fault {
+        match self.is_refused(fault) {
+            true => without_stand_in(fault.clone()),
+            false => fault.clone(),
         }
     }
 

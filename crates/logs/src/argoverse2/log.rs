@@ -13,7 +13,7 @@ use super::scene::{MOUNTINGS, TABLES, build_scene, is_log};
 use super::table::Table;
 use crate::files::unreadable;
 use crate::names::{nearest_names, quoted};
-use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
+use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints, UnknownLabels};
 
 /// Logs lie so deep at most: `sensor/val/<log>`.
 const DEPTH: usize = 3;
@@ -82,7 +82,7 @@ impl SceneSource for Argoverse2Log {
         let cloud = read_cloud(&self.root, sweep, &lidars)?;
         let empty = || Fault::new("sweep-empty", &sweep.file, "points", "none");
         let warnings = cloud.is_empty().then(empty).into_iter().collect();
-        Ok(SweepPoints { cloud, warnings })
+        Ok(SweepPoints { cloud, warnings, unknown: UnknownLabels::default() })
     }
 
     fn defaults(&self) -> ReaderDefaults {

@@ -21,7 +21,7 @@ use occlabel_core::{Fault, Scene};
 
 pub use severity::{Finding, Severity};
 pub use survey::{SceneSurvey, SweepSurvey};
-pub use unknown::{sum_unknown_labels, without_stand_in};
+pub use unknown::UnknownSum;
 
 /// What is odd about the poses and times of a scene, found out without reading a sweep: each can be
 /// lived with, but labels are worse for it. Knowing how thick the ground comes out of the sweeps,

@@ -1,70 +1,77 @@
 //! Raw labels that no taxonomy names, summed over sweeps.
 
-use std::collections::BTreeMap;
-
 use occlabel_core::Fault;
 
-/// The rule by which readers tell of them, as `LABEL of COUNT points, …`.
-pub(super) const UNKNOWN_LABEL: &str = "unknown-label";
-/// What readers add where a class stands in.
-const TAKEN_AS: &str = ", taken as ";
+use crate::UnknownLabels;
+use crate::raw_labels::UNKNOWN_LABEL;
 
-/// The fault without what is said about the class that stands in.
-pub fn without_stand_in(fault: Fault) -> Fault {
-    let found = fault.found.rsplit_once(TAKEN_AS).map(|(found, _)| found.to_owned());
-    Fault { found: found.unwrap_or(fault.found), ..fault }
+/// The unknown labels of a scene, gathered from its sweeps.
+#[derive(Clone, Debug, Default)]
+pub struct UnknownSum {
+    /// What was said of the first sweep that has some.
+    first: Option<Fault>,
+    labels: UnknownLabels,
+    sweeps: usize,
 }
 
-/// In place of the faults of single sweeps' unknown labels one that tells each label with all its
-/// points, at the first such sweep. Other faults stay as they are, before it.
-pub fn sum_unknown_labels(faults: Vec<Fault>) -> Vec<Fault> {
-    let is_unknown = |fault: &Fault| fault.rule == UNKNOWN_LABEL;
-    let (unknown, mut others): (Vec<Fault>, Vec<Fault>) = faults.into_iter().partition(is_unknown);
-    let sweeps = unknown.len();
-    let mut counts: BTreeMap<String, u64> = BTreeMap::new();
-    let mut first = None;
-    for fault in unknown.into_iter().map(without_stand_in) {
-        for (label, count) in fault.found.split(", ").map(label_and_count) {
-            *counts.entry(label.to_owned()).or_default() += count;
-        }
-        first.get_or_insert(fault);
+impl UnknownSum {
+    /// Adds a sweep's unknown labels; gives back what else was odd about it.
+    pub fn add(&mut self, unknown: UnknownLabels, warnings: Vec<Fault>) -> Vec<Fault> {
+        self.sweeps += usize::from(!unknown.is_empty());
+        self.labels.add(unknown);
+        let is_unknown = |fault: &Fault| fault.rule == UNKNOWN_LABEL;
+        let (told, others): (Vec<_>, _) = warnings.into_iter().partition(is_unknown);
+        self.first = self.first.take().or(told.into_iter().next());
+        others
     }
-    let told = counts.iter().map(|(label, count)| format!("{label} of {count} points"));
-    let found = format!("{}, in {sweeps} sweeps", told.collect::<Vec<_>>().join(", "));
-    others.extend(first.map(|first| Fault { found, ..first }));
-    others
-}
 
-/// `LABEL of COUNT points`; 0 for what is told otherwise.
-fn label_and_count(told: &str) -> (&str, u64) {
-    let (label, count) = told.rsplit_once(" of ").unwrap_or((told, ""));
-    (label, count.strip_suffix(" points").and_then(|count| count.parse().ok()).unwrap_or(0))
+    /// One fault that tells each label with all its points, at the first sweep that has some.
+    pub fn fault(self) -> Option<Fault> {
+        let found = format!("{}, in {} sweeps", self.labels, self.sweeps);
+        self.first.map(|first| Fault { found, ..first })
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use occlabel_core::ClassId;
 
-    #[test]
-    fn fault_26_labels_are_summed_over_sweeps() {
-        let fault = |file: &str, found: &str| Fault::new(UNKNOWN_LABEL, file, "known ones", found);
-        let other = Fault::new("sweep-empty", "c", "points", "none");
-        let faults = vec![
-            fault("a", "7 (ufo) of 3 points, 9 (elk) of 1 points"),
-            other.clone(),
-            fault("b", "9 (elk) of 40 points, taken as `car`"),
-        ];
-        let summed = sum_unknown_labels(faults);
-        let found = "7 (ufo) of 3 points, 9 (elk) of 41 points, in 2 sweeps";
-        assert_eq!(summed, [other, fault("a", found)]);
-        assert!(sum_unknown_labels(Vec::new()).is_empty());
+    use super::*;
+    use crate::ReadOptions;
+    use crate::raw_labels::{RawLabels, tests::options};
+
+    /// What reading a sweep of these labels gives; 18 is known.
+    fn read(file: &str, raw: &[i64]) -> (UnknownLabels, Vec<Fault>) {
+        let name =
+            |raw| Some(if raw == 18 { "ROAD".into() } else { format!("a, of {raw} points") });
+        let options = ReadOptions { unknown_as: Some(ClassId(0)), ..options() };
+        let mut labels = RawLabels::new(&options, name);
+        labels.labels(raw.to_vec());
+        let mut warnings = vec![Fault::new("sweep-empty", file, "points", "none")];
+        let unknown = labels.finish(file, &mut warnings).unwrap();
+        (unknown, warnings)
     }
 
     #[test]
-    fn what_stands_in_is_left_out() {
-        let fault = |found: &str| Fault::new(UNKNOWN_LABEL, "a", "known ones", found);
-        let taken = without_stand_in(fault("7 of 3 points, taken as `car`"));
-        assert_eq!(taken, fault("7 of 3 points"));
-        assert_eq!(without_stand_in(taken.clone()), taken);
+    fn fault_26_labels_are_summed_over_sweeps() {
+        let mut sum = UnknownSum::default();
+        let sweeps = [("a", &[18][..]), ("b", &[10, 18, 9, 10]), ("c", &[18, 9, 18]), ("d", &[])];
+        for (file, raw) in sweeps {
+            let (unknown, warnings) = read(file, raw);
+            let others = sum.add(unknown, warnings);
+            assert_eq!(others, [Fault::new("sweep-empty", file, "points", "none")]);
+        }
+        let fault = sum.fault().unwrap();
+        assert_eq!((fault.rule, fault.place.as_str()), (UNKNOWN_LABEL, "b"));
+        let found = "9 (a, of 9 points) of 2 points, 10 (a, of 10 points) of 2 points, in 2 sweeps";
+        assert_eq!(fault.found, found);
+    }
+
+    #[test]
+    fn nothing_is_said_where_all_labels_are_known() {
+        let mut sum = UnknownSum::default();
+        let (unknown, warnings) = read("a", &[18]);
+        sum.add(unknown, warnings);
+        assert_eq!(sum.fault(), None);
     }
 }

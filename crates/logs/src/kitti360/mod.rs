@@ -24,10 +24,11 @@ use nalgebra::Point3;
 use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
 
 use crate::files::{file_bytes, read_file};
+use crate::kitti_labels::{class_name, decode_labels};
 use crate::names::{nearest_names, quoted};
-use crate::point_names::{PointNames, decode_labels};
 use crate::points::decode_points;
-use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
+use crate::raw_labels::RawLabels;
+use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints, UnknownLabels};
 
 use classes::label_name;
 use deskew::deskew;
@@ -123,7 +124,7 @@ impl Kitti360Log {
             None => PointCloud::from_one_origin(LIDAR_ORIGIN, positions, labels),
         };
         let raw: Vec<u16> = match self.labels_of(sweep) {
-            None => return Ok(SweepPoints { cloud, warnings }),
+            None => return Ok(SweepPoints { cloud, warnings, unknown: UnknownLabels::default() }),
             Some(LabelSource::Scan(file)) => {
                 decode_labels(&read_file(&self.root, &file)?, &file, cloud.len())?
             }
@@ -133,11 +134,10 @@ impl Kitti360Log {
                 cloud.positions.iter().map(|p| class(p).unwrap_or(0)).collect()
             }
         };
-        let names = PointNames { options: &self.options, name: label_name };
-        let (labels, unknown) = names.labels(&raw, &sweep.file)?;
-        cloud.labels = labels;
-        warnings.extend(unknown);
-        Ok(SweepPoints { cloud, warnings })
+        let mut names = RawLabels::new(&self.options, |raw| class_name(raw, label_name));
+        cloud.labels = names.labels(raw);
+        let unknown = names.finish(&sweep.file, &mut warnings)?;
+        Ok(SweepPoints { cloud, warnings, unknown })
     }
 }
 
@@ -185,8 +185,7 @@ impl SceneSource for Kitti360Log {
 
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
         let located = |fault: Fault| fault.record(format!("sweep {}", sweep.source_id));
-        let SweepPoints { cloud, warnings } = self.read_cloud(sweep).map_err(located)?;
-        Ok(SweepPoints { cloud, warnings: warnings.into_iter().map(located).collect() })
+        Ok(self.read_cloud(sweep).map_err(located)?.located(located))
     }
 
     fn defaults(&self) -> ReaderDefaults {

@@ -5,6 +5,8 @@ use std::io::Read;
 use flate2::Crc;
 use mcap::records::{ChunkHeader, Record};
 
+use super::record::parse;
+
 /// A record's kind and length.
 const FRAMING_BYTES: usize = 9;
 
@@ -62,7 +64,7 @@ fn next<'a>(bytes: &mut &'a [u8]) -> Result<Record<'a>, String> {
     let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| cut_off())?;
     let (body, rest) = rest.split_at_checked(length).ok_or_else(cut_off)?;
     *bytes = rest;
-    mcap::parse_record(*kind, body).map_err(|error| error.to_string())
+    parse(*kind, body)
 }
 
 #[cfg(test)]
@@ -115,7 +117,8 @@ mod tests {
         };
         let whole = [record(0x80, 2, &[1, 2]), record(0x81, 0, &[])].concat();
         assert!(records(&whole).all(|record| record.is_ok()) && records(&whole).count() == 2);
-        for broken in [record(0x80, u64::MAX, &[]), record(0x80, 3, &[1, 2]), vec![0x80, 1]] {
+        let giant = record(0x80, u64::MAX, &[]);
+        for broken in [giant, record(0x80, 3, &[1, 2]), vec![0x80, 1], vec![0; 1 << 10]] {
             let both = [whole.as_slice(), &broken].concat();
             let read: Vec<_> = records(&both).collect();
             assert!(read.len() == 3 && read[2].is_err(), "{read:?}");

@@ -55,17 +55,22 @@ impl Container {
             // Its index may be cut off.
             last.channels.clear();
         }
-        if !contents.is_indexed() {
-            self.define(&mut contents);
-        }
-        (contents, fault.map(recoverable))
+        let broken = match contents.is_indexed() {
+            true => None,
+            false => self.define(&mut contents),
+        };
+        (contents, fault.map(recoverable).or(broken))
     }
 
-    /// Looks for channels in all chunks; one that is broken will be told of when it is read.
-    fn define(&mut self, contents: &mut Contents) {
+    /// Looks for channels in all chunks, and tells what is wrong with the first that is broken.
+    fn define(&mut self, contents: &mut Contents) -> Option<Fault> {
+        let mut fault = None;
         for start in contents.blocks.iter().map(|block| block.start).collect::<Vec<_>>() {
-            self.each_record(start, |_, record| contents.add(record)).unwrap_or_default();
+            if let Err(broken) = self.each_record(start, |_, record| contents.add(record)) {
+                fault.get_or_insert(broken);
+            }
         }
+        fault
     }
 
     fn step_through(&mut self, contents: &mut Contents) -> Result<(), Fault> {

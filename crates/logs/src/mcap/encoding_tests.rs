@@ -44,6 +44,7 @@ fn every_encoding_tells_the_same_drive() {
         assert_eq!(points.cloud.positions, expected, "{told:?}");
         assert_eq!(points.cloud.labels, [PointLabel::Class(ClassId(0)); 2], "9 is unknown");
         assert_eq!(points.warnings[0].rule, "unknown-label");
+        assert!(points.warnings[0].record.is_some() && !points.unknown.is_empty());
         assert_car_and_camera(&scene);
     }
 }

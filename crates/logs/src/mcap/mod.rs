@@ -23,6 +23,7 @@ mod messages;
 mod options;
 mod points;
 mod protobuf;
+mod record;
 mod record_file;
 mod recording;
 mod resolve;

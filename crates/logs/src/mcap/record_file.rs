@@ -7,6 +7,7 @@ use std::path::Path;
 use mcap::records::Record;
 use occlabel_core::Fault;
 
+use super::record::parse;
 use crate::files::{open_file, unreadable};
 
 /// Kind and length.
@@ -94,9 +95,8 @@ impl RecordFile {
     /// # Errors
     /// If it is not laid out as its kind is.
     pub(super) fn parse<'a>(&self, span: Span, body: &'a [u8]) -> Result<Record<'a>, Fault> {
-        mcap::parse_record(span.kind, body).map_err(|error| {
-            self.fault(span.start, "mcap-record", "a record as specified", error.to_string())
-        })
+        parse(span.kind, body)
+            .map_err(|found| self.fault(span.start, "mcap-record", "a record as specified", found))
     }
 
     /// Whether a record or chunk may have so many bytes.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Point3;
 use occlabel_core::{Fault, PointCloud, PointLabel, Pose, RigidMap, Timestamp};
 
-use super::classes::PointClasses;
+use super::classes::label_name;
 use super::frames::checked_pose;
 use super::messages::{Cloud, Defect};
 use super::options::McapOptions;
@@ -13,6 +13,7 @@ use super::points::Points;
 use super::recording::Recording;
 use super::sweeps::label_field;
 use crate::SweepPoints;
+use crate::raw_labels::RawLabels;
 
 /// Times of points from here on are counted from the epoch, seconds; below, from the sweep's time.
 const EPOCH_TIMES_FROM_S: f64 = 1e6;
@@ -27,15 +28,17 @@ pub(super) fn sweep_points(
     options: &McapOptions,
     (file, record): (&str, &str),
 ) -> Result<SweepPoints, Fault> {
-    let refuse = |Defect { expected, found }| {
-        Fault::new("cloud-fields", file, expected, found).record(record)
-    };
+    let located = |fault: Fault| fault.record(record);
+    let refuse =
+        |Defect { expected, found }| located(Fault::new("cloud-fields", file, expected, found));
     let points = Points::new(cloud).map_err(refuse)?;
-    let mut classes = PointClasses::new(&options.read, &options.settings, recording);
+    let name = |raw| Some(label_name(raw, &options.settings, recording));
+    let mut raw_labels = RawLabels::new(&options.read, name);
     let names: Vec<String> = cloud.fields.iter().map(|field| field.name.clone()).collect();
     let labels = match label_field(&options.settings, &names) {
         Some(field) => {
-            points.numbers(field).map_err(refuse)?.map(|raw| classes.label(raw)).collect()
+            let raw = points.numbers(field).map_err(refuse)?;
+            raw_labels.labels(raw.map(|raw| raw as i64))
         }
         None => vec![PointLabel::Unlabelled; points.len()],
     };
@@ -48,8 +51,9 @@ pub(super) fn sweep_points(
             stays.apply(positions, labels, &times).map_err(refuse)?
         }
     };
-    let warnings = classes.finish(file, record)?.into_iter().collect();
-    Ok(SweepPoints { cloud, warnings })
+    let mut warnings = Vec::new();
+    let unknown = raw_labels.finish(file, &mut warnings).map_err(located)?;
+    Ok(SweepPoints { cloud, warnings, unknown }.located(located))
 }
 
 fn point_times(

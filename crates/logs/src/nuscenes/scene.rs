@@ -8,7 +8,7 @@ use super::captures::Captures;
 use super::chains::report_chains;
 use super::copies::without_copies;
 use super::keyframes::{KeySweeps, Moment, moments, reference_lidar};
-use super::raw_labels::RawLabels;
+use super::label_names::label_names;
 use super::sweeps::{report_jumps, sweep_headers};
 use super::tables::SceneRows;
 use super::tracks::scene_tracks;
@@ -47,7 +47,7 @@ pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, 
 /// Whether raw labels can be told at all, if any sweep has them.
 fn check_labels(log: &NuScenesLog, headers: &[(usize, SweepHeader)]) -> Result<(), Fault> {
     match headers.iter().any(|(_, header)| header.labelled) {
-        true => RawLabels::of_log(log).map(drop),
+        true => label_names(log).map(drop),
         false => Ok(()),
     }
 }

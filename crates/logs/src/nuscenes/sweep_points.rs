@@ -2,16 +2,17 @@
 
 use std::io::BufReader;
 
-use occlabel_core::{Fault, LIDAR_ORIGIN, Meaning, PointCloud, PointLabel, SweepHeader};
+use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, SweepHeader};
 
 use super::NuScenesLog;
 use super::label_files::{LabelEncoding, LabelFile};
+use super::label_names::label_names;
 use super::npz::{NpzDefect, read_data};
-use super::raw_labels::RawLabels;
 use super::token::Token;
-use crate::SweepPoints;
 use crate::files::{open_file, read_file};
 use crate::points::decode_points;
+use crate::raw_labels::RawLabels;
+use crate::{SweepPoints, UnknownLabels};
 
 /// A panoptic label is this many times the raw label, plus an instance's number.
 const PANOPTIC_STEP: u16 = 1000;
@@ -29,9 +30,7 @@ pub(super) fn read_sweep_points(
         None => fault.record(sweep_name(log, sweep)),
         Some(_) => fault,
     };
-    let mut points = labelled_points(log, sweep).map_err(located)?;
-    points.warnings = points.warnings.into_iter().map(located).collect();
-    Ok(points)
+    Ok(labelled_points(log, sweep).map_err(located)?.located(located))
 }
 
 fn sweep_name(log: &NuScenesLog, sweep: &SweepHeader) -> String {
@@ -43,33 +42,26 @@ fn labelled_points(log: &NuScenesLog, sweep: &SweepHeader) -> Result<SweepPoints
     let bytes = read_file(&log.root, &sweep.file)?;
     let (positions, mut warnings) = decode_points(&bytes, &sweep.file, log.options.columns)?;
     let (labels, unknown) = match log.label_file(sweep) {
-        Some(file) => read_labels(log, file, positions.len())?,
-        None => (vec![PointLabel::Unlabelled; positions.len()], None),
+        Some(file) => read_labels(log, file, positions.len(), &mut warnings)?,
+        None => (vec![PointLabel::Unlabelled; positions.len()], UnknownLabels::default()),
     };
-    warnings.extend(unknown);
     let cloud = PointCloud::from_one_origin(LIDAR_ORIGIN, positions, labels);
-    Ok(SweepPoints { cloud, warnings })
+    Ok(SweepPoints { cloud, warnings, unknown })
 }
 
-/// One label for each of `count` points; and what to say of labels that nobody knows but that
-/// `unknown_as` stands in for.
+/// One label for each of `count` points, and the unknown ones among them.
 fn read_labels(
     log: &NuScenesLog,
     file: &LabelFile,
     count: usize,
-) -> Result<(Vec<PointLabel>, Option<Fault>), Fault> {
-    let classes = RawLabels::of_log(log)?;
+    warnings: &mut Vec<Fault>,
+) -> Result<(Vec<PointLabel>, UnknownLabels), Fault> {
+    let known = label_names(log)?;
+    let name = |raw| u16::try_from(raw).ok().and_then(|raw| known.get(&raw).copied());
+    let name = |raw| Some(name(raw).unwrap_or("no category").to_owned());
+    let mut names = RawLabels::new(&log.options.read, name);
     let raw = read_raw(log, file, count)?;
-    let unknown = classes.unknown(&raw).map(|found| {
-        let expected = "raw labels that category.json and the taxonomy name";
-        log.options.read.unknown(Fault::new("unknown-label", &file.file, expected, found))
-    });
-    let label = |raw: &u16| match classes.meaning(*raw) {
-        Some(Meaning::Class(class)) => PointLabel::Class(class),
-        Some(Meaning::Ignore) => PointLabel::Ignored,
-        None => log.options.read.unknown_as.map_or(PointLabel::Unlabelled, PointLabel::Class),
-    };
-    Ok((raw.iter().map(label).collect(), unknown.transpose()?))
+    Ok((names.labels(raw), names.finish(&file.file, warnings)?))
 }
 
 fn read_raw(log: &NuScenesLog, file: &LabelFile, count: usize) -> Result<Vec<u16>, Fault> {

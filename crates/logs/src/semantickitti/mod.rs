@@ -16,10 +16,11 @@ use std::path::{Path, PathBuf};
 use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
 
 use crate::files::{file_bytes, read_file};
+use crate::kitti_labels::{class_name, decode_labels};
 use crate::names::{nearest_names, quoted};
-use crate::point_names::{PointNames, decode_labels};
 use crate::points::decode_points;
-use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
+use crate::raw_labels::RawLabels;
+use crate::{PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints, UnknownLabels};
 
 pub(crate) use classes::label_name;
 use sequences::{Sequence, label_file, sequences};
@@ -57,19 +58,21 @@ impl SemanticKittiLog {
         }
     }
 
-    /// One label for each of `count` points of a sweep, and what to say of unknown ones.
-    fn read_labels(
-        &self,
-        sweep: &SweepHeader,
-        count: usize,
-    ) -> Result<(Vec<PointLabel>, Option<Fault>), Fault> {
-        match label_file(sweep) {
-            Some(file) if sweep.labelled => {
-                let raw = decode_labels(&read_file(&self.root, &file)?, &file, count)?;
-                PointNames { options: &self.options, name: label_name }.labels(&raw, &file)
+    fn read_cloud(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
+        let bytes = read_file(&self.root, &sweep.file)?;
+        let decoded = decode_points(&bytes, &sweep.file, Some(PointColumns::Four));
+        let (positions, mut warnings) = decoded?;
+        let mut names = RawLabels::new(&self.options, |raw| class_name(raw, label_name));
+        let (labels, unknown) = match label_file(sweep).filter(|_| sweep.labelled) {
+            Some(file) => {
+                let bytes = read_file(&self.root, &file)?;
+                let raw = decode_labels(&bytes, &file, positions.len())?;
+                (names.labels(raw), names.finish(&file, &mut warnings)?)
             }
-            _ => Ok((vec![PointLabel::Unlabelled; count], None)),
-        }
+            None => (vec![PointLabel::Unlabelled; positions.len()], UnknownLabels::default()),
+        };
+        let cloud = PointCloud::from_one_origin(LIDAR_ORIGIN, positions, labels);
+        Ok(SweepPoints { cloud, warnings, unknown })
     }
 }
 
@@ -103,13 +106,7 @@ impl SceneSource for SemanticKittiLog {
 
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
         let located = |fault: Fault| fault.record(format!("sweep {}", sweep.source_id));
-        let bytes = read_file(&self.root, &sweep.file).map_err(located)?;
-        let decoded = decode_points(&bytes, &sweep.file, Some(PointColumns::Four));
-        let (positions, mut warnings) = decoded.map_err(located)?;
-        let (labels, unknown) = self.read_labels(sweep, positions.len()).map_err(located)?;
-        warnings.extend(unknown);
-        let cloud = PointCloud::from_one_origin(LIDAR_ORIGIN, positions, labels);
-        Ok(SweepPoints { cloud, warnings: warnings.into_iter().map(located).collect() })
+        Ok(self.read_cloud(sweep).map_err(located)?.located(located))
     }
 
     fn defaults(&self) -> ReaderDefaults {

@@ -32,10 +32,11 @@ use std::slice;
 use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 
 use crate::names::{nearest_names, quoted};
+use crate::raw_labels::RawLabels;
 use crate::sampled_points::sampled_points;
 use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
-use classes::PointClasses;
+use classes::point_class;
 #[cfg(feature = "waymo-v2")]
 use components::Components;
 use layout::Layout;
@@ -136,10 +137,12 @@ impl SceneSource for WaymoLog {
         let rows = rows.map_err(|found| {
             place.fault("range-image", "images of one size, an inclination for each row", found)
         })?;
-        let mut classes = PointClasses::new(&self.options);
-        let cloud = points(&images, &rows, sweep, |raw| classes.label(raw));
-        let warnings = classes.finish(&place)?.into_iter().collect();
-        Ok(SweepPoints { cloud, warnings })
+        let mut classes = RawLabels::new(&self.options, point_class);
+        let cloud = points(&images, &rows, sweep, |raw| classes.label(raw.into()));
+        let located = |fault: Fault| fault.record(&sweep.source_id);
+        let mut warnings = Vec::new();
+        let unknown = classes.finish(&sweep.file, &mut warnings).map_err(located)?;
+        Ok(SweepPoints { cloud, warnings, unknown }.located(located))
     }
 
     fn defaults(&self) -> ReaderDefaults {

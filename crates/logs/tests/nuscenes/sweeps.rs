@@ -164,6 +164,7 @@ fn fault_26_an_unknown_raw_label_is_told_with_its_count_and_file() {
     let sweep = read(&log).unwrap();
     assert_eq!(sweep.cloud.labels, [PointLabel::Class(ROAD); 2]);
     assert_eq!(sweep.warnings[0].rule, "unknown-label");
+    assert_eq!(sweep.unknown.to_string(), "90 (no category) of 2 points");
 }
 
 #[test]

@@ -115,6 +115,7 @@ fn fault_26_an_unknown_label_is_refused_unless_a_class_stands_in() {
     let read = log.read_sweep(&log.load("00").unwrap().sweeps[0]).unwrap();
     assert_eq!(read.cloud.labels[1..], [occlabel_core::PointLabel::Class(car); 3]);
     assert!(read.warnings[0].to_string().contains("taken as `car`"));
+    assert_eq!(format!("found {}", read.unknown), told);
 }
 
 #[test]

@@ -170,9 +170,12 @@ fn fault_26_unknown_types_and_classes_are_told_with_their_counts() {
     let root = folder(&classes);
     let taken = ReadOptions { unknown_as: Some(ClassId(3)), ..options() };
     let log = WaymoLog::open(root.path(), taken).unwrap();
-    let points = log.read_sweep(&log.load(SEGMENT).unwrap().sweeps[4]).unwrap();
+    let sweep = &log.load(SEGMENT).unwrap().sweeps[4];
+    let points = log.read_sweep(sweep).unwrap();
     assert!(points.cloud.labels.contains(&PointLabel::Class(ClassId(3))));
-    assert_eq!(points.warnings.len(), 1);
+    let [warning] = &points.warnings[..] else { panic!("{:?}", points.warnings) };
+    assert_eq!(warning.found, format!("{}, taken as `BUS`", points.unknown));
+    assert_eq!(warning.record.as_deref(), Some(sweep.source_id.as_str()));
 }
 
 /// A matrix of labels of 36 columns.
