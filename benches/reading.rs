@@ -13,10 +13,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::hint::black_box;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
-use occlabel_core::{KeyframeSettings, KeyframeSource, McapSettings};
+use occlabel_core::{ClassId, McapSettings};
 use occlabel_logs::{
     Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions,
     QuaternionOrder, ReadOptions, SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
@@ -130,14 +129,6 @@ fn open(format: &str, root: &Path) -> Box<dyn SceneSource> {
 
 fn options(taxonomy: &str) -> ReadOptions {
     let text = shipped_taxonomy(taxonomy).expect("a shipped taxonomy");
-    ReadOptions {
-        scenes: None,
-        taxonomy: Arc::new(parse_taxonomy(text, taxonomy).expect("a taxonomy")),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        },
-        unknown_as: Some(occlabel_core::ClassId(0)),
-    }
+    let taxonomy = parse_taxonomy(text, taxonomy).expect("a taxonomy");
+    ReadOptions { unknown_as: Some(ClassId(0)), ..ReadOptions::of(taxonomy) }
 }

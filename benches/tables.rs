@@ -7,9 +7,6 @@
 
 mod cost;
 
-use std::sync::Arc;
-
-use occlabel_core::{KeyframeSettings, KeyframeSource};
 use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_testkit::{LogSpec, write_log};
@@ -34,17 +31,9 @@ fn main() {
 
 fn options() -> NuScenesOptions {
     let text = shipped_taxonomy("occ3d-nuscenes").expect("a shipped taxonomy");
+    let taxonomy = parse_taxonomy(text, "occ3d-nuscenes").expect("a taxonomy");
     NuScenesOptions {
-        read: ReadOptions {
-            scenes: Some([SCENE.to_owned()].into()),
-            taxonomy: Arc::new(parse_taxonomy(text, "occ3d-nuscenes").expect("a taxonomy")),
-            keyframes: KeyframeSettings {
-                source: KeyframeSource::Annotated,
-                stride: 1,
-                reference_lidar: "auto".into(),
-            },
-            unknown_as: None,
-        },
+        read: ReadOptions { scenes: Some([SCENE.to_owned()].into()), ..ReadOptions::of(taxonomy) },
         version: None,
         quaternion_order: QuaternionOrder::Wxyz,
         columns: None,

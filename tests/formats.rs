@@ -6,7 +6,7 @@ mod support;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use support::{Arrays, SMALL, occlabel, read_arrays, text};
+use support::{Arrays, labelled_drive, read_arrays};
 
 /// A street with movers, two lidars and two cameras. The ego does not sway: Waymo's boxes stand upright
 /// in the vehicle.
@@ -97,16 +97,7 @@ const KEYFRAMES: [u64; 4] = [0, 500_000_000, 1_000_000_000, 1_500_000_000];
 
 /// The label tree of the drive, written as one format and read as it, or as another that reads both.
 fn labelled(folder: &Path, written: &str, read: &str) -> PathBuf {
-    let (log, labels) = (folder.join(written), folder.join(format!("{written}-labels")));
-    let world = folder.join("drive.toml");
-    fs::write(&world, WORLD).expect("a world");
-    let line = ["simulate", "--world", text(&world), "--format", written, "--output", text(&log)];
-    occlabel(&[&line[..], &["--images", "none"]].concat()).exits(0);
-    let line = ["label", "--format", read, "--input", text(&log), "--output", text(&labels)];
-    let rules =
-        ["--set", "taxonomy.file=occ3d-waymo", "--set", "aggregate.ego_box_m=none", "--evidence"];
-    occlabel(&[&line[..], &rules, &SMALL].concat()).exits(0);
-    labels
+    labelled_drive(folder, WORLD, [written, read], "occ3d-waymo")
 }
 
 fn arrays(tree: &Path, prefix: &str) -> Vec<Arrays> {

@@ -2,10 +2,9 @@
 
 mod support;
 
-use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use support::{SMALL, occlabel, read_arrays, text};
+use support::{labelled_drive, read_arrays};
 
 /// Keyframes of the nuScenes log, and the scans that are the same sweeps; nanoseconds.
 const KEYFRAMES: [u64; 5] = [0, 500_000_000, 1_000_000_000, 1_500_000_000, 2_000_000_000];
@@ -50,17 +49,8 @@ pose = { position_m = [12.0, -6.5, 2.0] }
 shape.cylinder = { radius_m = 0.4, height_m = 4.0 }
 "#;
 
-fn labelled(folder: &Path, format: &str) -> std::path::PathBuf {
-    let (log, labels) = (folder.join(format), folder.join(format!("{format}-labels")));
-    let world = folder.join("still.toml");
-    fs::write(&world, WORLD).expect("a world");
-    let line = ["simulate", "--world", text(&world), "--format", format, "--output", text(&log)];
-    occlabel(&[&line[..], &["--images", "none"]].concat()).exits(0);
-    let line = ["label", "--format", format, "--input", text(&log), "--output", text(&labels)];
-    let rules =
-        ["--set", "taxonomy.file=semantickitti", "--set", "aggregate.ego_box_m=none", "--evidence"];
-    occlabel(&[&line[..], &rules, &SMALL].concat()).exits(0);
-    labels
+fn labelled(folder: &Path, format: &str) -> PathBuf {
+    labelled_drive(folder, WORLD, [format; 2], "semantickitti")
 }
 
 /// Voxels that are the same in both lists, and voxels.

@@ -1,5 +1,6 @@
 //! The program, and how it ended.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -39,6 +40,26 @@ pub(crate) fn occlabel(args: &[&str]) -> Ended {
 /// A path as an argument.
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().expect("a path in UTF-8")
+}
+
+/// The label tree, in the small grid, of a drive through a world: written as one format and read as it,
+/// or as another that reads both.
+pub(crate) fn labelled_drive(
+    folder: &Path,
+    world: &str,
+    [written, read]: [&str; 2],
+    taxonomy: &str,
+) -> PathBuf {
+    let (log, labels) = (folder.join(written), folder.join(format!("{written}-labels")));
+    let file = folder.join("world.toml");
+    fs::write(&file, world).expect("a world");
+    let line = ["simulate", "--world", text(&file), "--format", written, "--output", text(&log)];
+    occlabel(&[&line[..], &["--images", "none"]].concat()).exits(0);
+    let line = ["label", "--format", read, "--input", text(&log), "--output", text(&labels)];
+    let taxonomy = format!("taxonomy.file={taxonomy}");
+    let rules = ["--set", &taxonomy, "--set", "aggregate.ego_box_m=none", "--evidence"];
+    occlabel(&[&line[..], &rules, &SMALL].concat()).exits(0);
+    labels
 }
 
 fn program() -> Command {

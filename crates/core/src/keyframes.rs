@@ -25,6 +25,11 @@ pub enum KeyframeSource {
 }
 
 impl KeyframeSettings {
+    /// All of the format's own keyframes, of the lidar that `"auto"` takes.
+    pub fn annotated() -> Self {
+        Self { source: KeyframeSource::Annotated, stride: 1, reference_lidar: "auto".into() }
+    }
+
     /// The reference lidar among the lidars of a log; `None` if the named one is not there.
     pub fn choose_lidar(&self, lidars: &[String]) -> Option<String> {
         let chosen = match self.reference_lidar.as_str() {
@@ -48,11 +53,8 @@ mod tests {
 
     fn choose(wanted: &str, lidars: &[&str]) -> Option<String> {
         let lidars: Vec<String> = lidars.iter().map(|name| name.to_string()).collect();
-        let settings = KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: wanted.into(),
-        };
+        let reference_lidar = wanted.into();
+        let settings = KeyframeSettings { reference_lidar, ..KeyframeSettings::annotated() };
         settings.choose_lidar(&lidars)
     }
 

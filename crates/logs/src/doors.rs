@@ -17,7 +17,7 @@ use crate::points::{PointColumns, decode_points};
 use crate::raw_labels::RawLabels;
 use crate::semantickitti::{label_name, line_of_pose, line_of_time};
 use crate::waymo::compressed;
-use crate::{ReadOptions, SceneSource, WaymoLog, mcap};
+use crate::{ReadOptions, SceneSource, WaymoLog, kitti360, mcap};
 
 /// A parser.
 pub struct Door {
@@ -48,6 +48,9 @@ pub const DOORS: &[Door] = &[
         seeds: || vec![vec![40, 0, 1, 0, 10, 0, 0, 0]],
     },
     Door { name: "kitti_text", knock: kitti_text, seeds: || vec![TEXT.to_vec()] },
+    Door { name: "kitti360_text", knock: kitti360::doors::text, seeds: kitti360::doors::texts },
+    Door { name: "kitti360_boxes", knock: kitti360::doors::boxes, seeds: kitti360::doors::objects },
+    Door { name: "kitti360_fused", knock: kitti360::doors::fused, seeds: kitti360::doors::clouds },
 ];
 
 const DRIVE: &[u8] = include_bytes!("../tests/waymo/fixtures/v1/drive.tfrecord");
@@ -59,23 +62,26 @@ const TEXT: &[u8] = b"1 0 0 1.5 0 1 0 -2e-3 0 0 1 3\n0.103736\n-1 0 0 0 0 1 0 0 
 /// Points of a fixed file.
 const POINTS: usize = 4;
 
-/// Hands bytes on as a file in a folder of its own.
-pub(crate) fn in_file(bytes: &[u8], name: &str, read: impl Fn(&Path) -> bool) -> bool {
+/// Hands bytes on as files in a folder of their own.
+pub(crate) fn in_folder(files: &[(&str, &[u8])], read: impl Fn(&Path) -> bool) -> bool {
     static FOLDERS: AtomicUsize = AtomicUsize::new(0);
     let (process, number) = (std::process::id(), FOLDERS.fetch_add(1, Ordering::Relaxed));
     let folder: PathBuf = std::env::temp_dir().join(format!("occlabel-door-{process}-{number}"));
-    fs::create_dir_all(&folder).and_then(|()| fs::write(folder.join(name), bytes)).unwrap();
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().unwrap()).and_then(|()| fs::write(path, bytes)).unwrap();
+    }
     let read = read(&folder);
     fs::remove_dir_all(&folder).unwrap();
     read
 }
 
-fn read_options() -> ReadOptions {
+pub(crate) fn read_options() -> ReadOptions {
     mcap::samples::options().read
 }
 
 fn tfrecord(bytes: &[u8]) -> bool {
-    in_file(bytes, "a.tfrecord", |root| {
+    in_folder(&[("a.tfrecord", bytes)], |root| {
         let Ok(log) = WaymoLog::open(root, read_options()) else { return false };
         log.scene_names().iter().all(|name| {
             let Ok(scene) = log.load(name) else { return false };

@@ -22,6 +22,12 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
+    /// All scenes at the format's own keyframes; what the taxonomy does not name is refused.
+    pub fn of(taxonomy: Taxonomy) -> Self {
+        let (taxonomy, keyframes) = (Arc::new(taxonomy), KeyframeSettings::annotated());
+        Self { scenes: None, taxonomy, keyframes, unknown_as: None }
+    }
+
     /// Whether a scene is wanted.
     pub(crate) fn wants(&self, scene: &str) -> bool {
         self.scenes.as_ref().is_none_or(|wanted| wanted.contains(scene))

@@ -130,9 +130,8 @@ impl fmt::Display for UnknownLabels {
 #[cfg(test)]
 pub(crate) mod tests {
     use std::cell::Cell;
-    use std::sync::Arc;
 
-    use occlabel_core::{ClassId, KeyframeSettings, KeyframeSource};
+    use occlabel_core::ClassId;
     use proptest::prelude::*;
 
     use super::*;
@@ -140,13 +139,7 @@ pub(crate) mod tests {
     /// The taxonomy of Occ3D-Waymo, which names `ROAD`, `CAR` and `UNDEFINED`.
     pub(crate) fn options() -> ReadOptions {
         let taxonomy = include_str!("../../../configs/taxonomies/occ3d-waymo.toml");
-        let keyframes = KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        };
-        let taxonomy = Arc::new(toml::from_str(taxonomy).expect("a taxonomy"));
-        ReadOptions { scenes: None, taxonomy, keyframes, unknown_as: None }
+        ReadOptions::of(toml::from_str(taxonomy).expect("a taxonomy"))
     }
 
     /// 0 is nobody's, what ends with the byte 18 is a road, the taxonomy does not name the others.

@@ -1,9 +1,8 @@
 //! A tiny drive, written as nuScenes and as MCAP: both logs give the same scene, to the bit.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use occlabel_core::{KeyframeSettings, KeyframeSource, McapSettings, Scene, Taxonomy};
+use occlabel_core::{McapSettings, Scene, Taxonomy};
 use occlabel_logs::{
     McapLog, McapOptions, NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource,
     TimeSource,
@@ -19,16 +18,7 @@ fn taxonomy() -> Taxonomy {
 }
 
 fn read() -> ReadOptions {
-    ReadOptions {
-        scenes: None,
-        taxonomy: Arc::new(taxonomy()),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        },
-        unknown_as: None,
-    }
+    ReadOptions::of(taxonomy())
 }
 
 fn nuscenes(drive: &Drive, root: &Path) -> NuScenesLog {

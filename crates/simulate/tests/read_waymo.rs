@@ -2,12 +2,9 @@
 //! of the drive.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use nalgebra::Point3;
-use occlabel_core::{
-    KeyframeSettings, KeyframeSource, PointCloud, PointLabel, Scene, SweepHeader, Taxonomy,
-};
+use occlabel_core::{PointCloud, PointLabel, Scene, SweepHeader, Taxonomy};
 use occlabel_logs::{ReadOptions, SceneSource, WaymoLog};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{Drive, Output, World, world_text_with, write_waymo};
@@ -35,14 +32,7 @@ fn drive(settings: &[&str]) -> Drive {
 }
 
 fn open(root: &Path) -> (WaymoLog, Scene) {
-    let keyframes = KeyframeSettings {
-        source: KeyframeSource::Annotated,
-        stride: 1,
-        reference_lidar: "auto".into(),
-    };
-    let taxonomy = Arc::new(taxonomy());
-    let options = ReadOptions { scenes: None, taxonomy, keyframes, unknown_as: None };
-    let log = WaymoLog::open(root, options).unwrap();
+    let log = WaymoLog::open(root, ReadOptions::of(taxonomy())).unwrap();
     let scene = log.load("tiny").unwrap();
     assert!(scene.warnings.is_empty() && scene.refused.is_empty(), "{:?}", scene.warnings);
     (log, scene)

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
 use occlabel_core::{
-    Fault, KeyframeSettings, KeyframeSource, OccupancyLabels, PointCloud, PointLabel, Pose, Scene,
-    SweepHeader, Taxonomy,
+    Fault, OccupancyLabels, PointCloud, PointLabel, Pose, Scene, SweepHeader, Taxonomy,
 };
 use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use occlabel_pipeline::{
@@ -70,16 +68,7 @@ fn write(drives: &[Drive], root: &Path) {
 
 fn open(root: &Path) -> NuScenesLog {
     let options = NuScenesOptions {
-        read: ReadOptions {
-            scenes: None,
-            taxonomy: Arc::new(taxonomy()),
-            keyframes: KeyframeSettings {
-                source: KeyframeSource::Annotated,
-                stride: 1,
-                reference_lidar: "auto".into(),
-            },
-            unknown_as: None,
-        },
+        read: ReadOptions::of(taxonomy()),
         version: None,
         quaternion_order: QuaternionOrder::default(),
         columns: None,

@@ -3,11 +3,10 @@
 //! A picture is a bird's-eye view of one layer: x goes up, y goes left, one character a voxel.
 //!
 //! ```
-//! use occlabel_testkit::{draw, parse};
+//! use occlabel_testkit::draw;
 //!
 //! let picture = draw([2, 3, 1], |[x, y, _]| if [x, y] == [1, 2] { '#' } else { '.' }, 0);
 //! assert_eq!(picture, "#..\n...\n");
-//! assert_eq!(parse(&picture).get(1, 2), '#');
 //! ```
 
 use std::path::{Path, PathBuf};
@@ -17,35 +16,6 @@ use std::path::{Path, PathBuf};
 pub fn draw(shape: [usize; 3], get: impl Fn([usize; 3]) -> char, z: usize) -> String {
     let row = |x| (0..shape[1]).rev().map(|y| get([x, y, z])).chain(['\n']).collect::<String>();
     (0..shape[0]).rev().map(row).collect()
-}
-
-/// A picture that was read back.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TextSlice {
-    rows: Vec<Vec<char>>,
-}
-
-/// Reads a picture; blanks around its lines and empty lines do not count.
-pub fn parse(picture: &str) -> TextSlice {
-    let lines = picture.lines().map(str::trim).filter(|line| !line.is_empty());
-    let rows: Vec<Vec<char>> = lines.map(|line| line.chars().collect()).collect();
-    let widths: Vec<usize> = rows.iter().map(Vec::len).collect();
-    assert!(widths.windows(2).all(|pair| pair[0] == pair[1]), "rows of widths {widths:?}");
-    TextSlice { rows }
-}
-
-impl TextSlice {
-    /// The number of voxels along x and y.
-    pub fn shape(&self) -> [usize; 2] {
-        [self.rows.len(), self.rows.first().map_or(0, Vec::len)]
-    }
-
-    /// The character of a voxel.
-    pub fn get(&self, x: usize, y: usize) -> char {
-        let [nx, ny] = self.shape();
-        assert!(x < nx && y < ny, "voxel ({x}, {y}) of a picture of {nx} x {ny}");
-        self.rows[nx - 1 - x][ny - 1 - y]
-    }
 }
 
 /// Asserts that `text` is what stands in the file `path` (relative to `tests/fixtures/goldens` of
@@ -90,22 +60,6 @@ mod tests {
         let letters = [['a', 'b', 'c'], ['d', 'e', 'f']];
         let picture = draw([2, 3, 2], |[x, y, z]| if z == 1 { letters[x][y] } else { '.' }, 1);
         assert_eq!(picture, "fed\ncba\n");
-    }
-
-    #[test]
-    fn a_picture_reads_back() {
-        let get = |[x, y, _]: [usize; 3]| char::from(b'a' + (5 * x + y) as u8);
-        let slice = parse(&draw([4, 5, 1], get, 0));
-        assert_eq!(slice.shape(), [4, 5]);
-        for (x, y) in (0..4).flat_map(|x| (0..5).map(move |y| (x, y))) {
-            assert_eq!(slice.get(x, y), get([x, y, 0]));
-        }
-    }
-
-    #[test]
-    #[should_panic(expected = "rows of widths [2, 3]")]
-    fn ragged_pictures_are_refused() {
-        parse("..\n...\n");
     }
 
     fn golden_of(text: &str) -> (tempfile::TempDir, PathBuf) {

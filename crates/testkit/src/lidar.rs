@@ -25,7 +25,7 @@ impl LidarPattern {
     /// Every ray's ring (0 is the lowest) and unit direction in the lidar frame, azimuth by azimuth.
     /// Azimuths stand 0.3 steps off the x axis, so that no ray runs along an axis or a diagonal,
     /// whatever their number, and so in no plane of voxel faces.
-    pub fn directions(&self) -> impl Iterator<Item = (usize, Vector3<f64>)> {
+    pub(crate) fn directions(&self) -> impl Iterator<Item = (usize, Vector3<f64>)> {
         let pattern = *self;
         (0..self.azimuths).flat_map(move |step| {
             let azimuth_rad = TAU * (step as f64 + 0.3) / pattern.azimuths as f64;
@@ -45,17 +45,21 @@ impl LidarPattern {
 
 /// One return of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Return {
+pub(crate) struct Return {
     /// The point in the lidar frame, as it goes to disk.
-    pub point_m: [f32; 3],
+    pub(crate) point_m: [f32; 3],
     /// The beam's number, 0 is the lowest.
-    pub ring: usize,
+    pub(crate) ring: usize,
     /// What was hit; its distance is the unrounded one.
-    pub hit: Hit,
+    pub(crate) hit: Hit,
 }
 
 /// All returns of one sweep, in the order of [`LidarPattern::directions`].
-pub fn sweep(street: &StreetInstant, world_from_ego: &Pose, pattern: &LidarPattern) -> Vec<Return> {
+pub(crate) fn sweep(
+    street: &StreetInstant,
+    world_from_ego: &Pose,
+    pattern: &LidarPattern,
+) -> Vec<Return> {
     let world_from_lidar = world_from_ego * ego_from_lidar();
     let origin = world_from_lidar * Point3::origin();
     let cast = |(ring, in_lidar)| {

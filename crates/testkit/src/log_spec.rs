@@ -36,18 +36,18 @@ pub struct LogSpec {
 
 /// The place of one sweep in its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SweepSlot {
+pub(crate) struct SweepSlot {
     /// The keyframe it belongs to: its own, or the one that follows.
-    pub keyframe: usize,
+    pub(crate) keyframe: usize,
     /// Whether it is that keyframe's own.
-    pub is_key: bool,
+    pub(crate) is_key: bool,
     /// Its time after the scene's first keyframe.
-    pub offset_us: i64,
+    pub(crate) offset_us: i64,
 }
 
 impl SweepSlot {
     /// Its time after the scene's first keyframe, in seconds.
-    pub fn time_s(&self) -> f64 {
+    pub(crate) fn time_s(&self) -> f64 {
         self.offset_us as f64 / 1e6
     }
 }
@@ -104,7 +104,7 @@ impl LogSpec {
     }
 
     /// The sweeps of a scene, in the order of time.
-    pub fn sweep_slots(&self) -> impl Iterator<Item = SweepSlot> {
+    pub(crate) fn sweep_slots(&self) -> impl Iterator<Item = SweepSlot> {
         let pace = self.sweeps_per_keyframe as i64;
         let end = (self.keyframes as i64 - 1) * pace;
         (-(self.lead_in_sweeps as i64)..=end).map(move |step| SweepSlot {

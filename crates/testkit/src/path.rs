@@ -2,51 +2,51 @@
 
 /// A place on the ground with a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub(crate) struct Place {
     /// World x.
-    pub x_m: f64,
+    pub(crate) x_m: f64,
     /// World y.
-    pub y_m: f64,
+    pub(crate) y_m: f64,
     /// Heading, counter-clockwise from world x.
-    pub yaw_rad: f64,
+    pub(crate) yaw_rad: f64,
 }
 
 /// One bend in a path, driven at a constant yaw rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub(crate) struct Turn {
     /// When it begins.
-    pub begin_s: f64,
+    pub(crate) begin_s: f64,
     /// How long it lasts.
-    pub duration_s: f64,
+    pub(crate) duration_s: f64,
     /// Yaw rate; positive is to the left, never zero.
-    pub yaw_rate_rad_s: f64,
+    pub(crate) yaw_rate_rad_s: f64,
 }
 
 /// Travel at constant speed: straight on, with at most one turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Path {
+pub(crate) struct Path {
     /// The place at time zero.
-    pub start: Place,
+    pub(crate) start: Place,
     /// Speed along the heading; 0 stands still.
-    pub speed_mps: f64,
+    pub(crate) speed_mps: f64,
     /// The bend, if there is one; it begins at time zero or later.
-    pub turn: Option<Turn>,
+    pub(crate) turn: Option<Turn>,
 }
 
 impl Path {
     /// Standing still.
-    pub fn still(x_m: f64, y_m: f64) -> Self {
+    pub(crate) fn still(x_m: f64, y_m: f64) -> Self {
         Self::straight(x_m, y_m, 0.0, 0.0)
     }
 
     /// Straight on along a heading.
-    pub fn straight(x_m: f64, y_m: f64, yaw_rad: f64, speed_mps: f64) -> Self {
+    pub(crate) fn straight(x_m: f64, y_m: f64, yaw_rad: f64, speed_mps: f64) -> Self {
         let start = Place { x_m, y_m, yaw_rad };
         Self { start, speed_mps, turn: None }
     }
 
     /// The place at a time, negative times included.
-    pub fn at(&self, time_s: f64) -> Place {
+    pub(crate) fn at(&self, time_s: f64) -> Place {
         let Some(turn) = self.turn else {
             return self.start.ahead(self.speed_mps * time_s);
         };

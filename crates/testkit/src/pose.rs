@@ -3,10 +3,10 @@
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 /// A rigid transform; `a_from_b * b_from_c` chains, `a_from_b * point_in_b` applies.
-pub type Pose = Isometry3<f64>;
+pub(crate) type Pose = Isometry3<f64>;
 
 /// A pose turned by `yaw_rad` about z, counter-clockwise seen from above.
-pub fn yaw_pose(translation_m: [f64; 3], yaw_rad: f64) -> Pose {
+pub(crate) fn yaw_pose(translation_m: [f64; 3], yaw_rad: f64) -> Pose {
     let half = yaw_rad / 2.0;
     pose(translation_m, [libm::cos(half), 0.0, 0.0, libm::sin(half)])
 }

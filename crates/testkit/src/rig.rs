@@ -14,32 +14,32 @@ const EGO_FROM_OPTICAL: [f64; 4] = [0.5, -0.5, 0.5, -0.5];
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub(crate) struct Camera {
     /// Channel name.
-    pub channel: &'static str,
+    pub(crate) channel: &'static str,
     /// Place in the ego frame.
-    pub place_m: [f64; 3],
+    pub(crate) place_m: [f64; 3],
     /// Direction of view, in degrees left of ahead.
-    pub yaw_deg: f64,
+    pub(crate) yaw_deg: f64,
     /// Horizontal field of view.
-    pub fov_deg: f64,
+    pub(crate) fov_deg: f64,
     /// Its exposure, from the lidar's key sweep.
-    pub delay_us: i64,
+    pub(crate) delay_us: i64,
 }
 
 impl Camera {
     /// Image width.
-    pub const WIDTH: u32 = 1600;
+    pub(crate) const WIDTH: u32 = 1600;
     /// Image height.
-    pub const HEIGHT: u32 = 900;
+    pub(crate) const HEIGHT: u32 = 900;
 
     /// Where it sits and looks.
-    pub fn ego_from_camera(&self) -> Pose {
+    pub(crate) fn ego_from_camera(&self) -> Pose {
         yaw_pose(self.place_m, self.yaw_deg.to_radians()) * pose([0.0; 3], EGO_FROM_OPTICAL)
     }
 
     /// The intrinsic matrix, by rows.
-    pub fn intrinsic(&self) -> [[f64; 3]; 3] {
+    pub(crate) fn intrinsic(&self) -> [[f64; 3]; 3] {
         let (cx, cy) = (f64::from(Self::WIDTH) / 2.0, f64::from(Self::HEIGHT) / 2.0);
         let focal = cx / libm::tan(self.fov_deg.to_radians() / 2.0);
         [[focal, 0.0, cx], [0.0, focal, cy], [0.0, 0.0, 1.0]]
@@ -47,7 +47,7 @@ impl Camera {
 }
 
 /// The six cameras of nuScenes.
-pub fn cameras() -> [Camera; 6] {
+pub(crate) fn cameras() -> [Camera; 6] {
     let camera = |channel, place_m, yaw_deg, fov_deg, delay_us| Camera {
         channel,
         place_m,
@@ -66,12 +66,12 @@ pub fn cameras() -> [Camera; 6] {
 }
 
 /// Where the lidar sits: its x axis points to the car's right, its y axis ahead.
-pub fn ego_from_lidar() -> Pose {
+pub(crate) fn ego_from_lidar() -> Pose {
     yaw_pose(LIDAR_PLACE_M, -FRAC_PI_2)
 }
 
 /// The ego at a time: along world x, at the world's origin (but for its lane) at time zero.
-pub fn world_from_ego(speed_mps: f64, time_s: f64) -> Pose {
+pub(crate) fn world_from_ego(speed_mps: f64, time_s: f64) -> Pose {
     yaw_pose([speed_mps * time_s, EGO_LANE_Y_M, 0.0], 0.0)
 }
 

@@ -1,6 +1,6 @@
 //! The rows that all scenes of a log share: categories, attributes, sensors.
 
-use crate::categories::CATEGORIES;
+use crate::categories::{categories, category_index};
 use crate::log_spec::LogSpec;
 use crate::pose::{Pose, rotation_of, translation_of};
 use crate::rig::{cameras, ego_from_lidar};
@@ -21,7 +21,7 @@ const VISIBILITIES: [(&str, &str); 4] =
 pub(crate) const VISIBLE: &str = VISIBILITIES[3].0;
 
 pub(crate) fn category_token(name: &str) -> String {
-    token("category", crate::categories::category_index(name) as u64)
+    token("category", category_index(name) as u64)
 }
 
 /// The attribute of an annotation, as far as its category has one.
@@ -46,7 +46,7 @@ pub(crate) fn calibration_token(channel: usize) -> String {
 }
 
 pub(crate) fn push_shared_rows(tables: &mut TableSet, spec: &LogSpec) -> io::Result<()> {
-    tables.category.extend(categories(spec.labels))?;
+    tables.category.extend(category_rows(spec.labels))?;
     tables.attribute.extend(attributes())?;
     tables.visibility.extend(visibilities())?;
     push_sensor(tables, 0, LIDAR, "lidar", &ego_from_lidar(), Vec::new())?;
@@ -56,8 +56,8 @@ pub(crate) fn push_shared_rows(tables: &mut TableSet, spec: &LogSpec) -> io::Res
     Ok(())
 }
 
-fn categories(labels: bool) -> impl Iterator<Item = Category> {
-    CATEGORIES.into_iter().enumerate().map(move |(index, name)| Category {
+fn category_rows(labels: bool) -> impl Iterator<Item = Category> {
+    categories().enumerate().map(move |(index, name)| Category {
         token: category_token(name),
         name,
         description: "",

@@ -9,16 +9,16 @@ use nalgebra::{Point3, Vector3};
 
 /// A half-line.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray {
+pub(crate) struct Ray {
     /// Where it starts.
-    pub origin: Point3<f64>,
+    pub(crate) origin: Point3<f64>,
     /// Where it goes: a unit vector.
-    pub direction: Vector3<f64>,
+    pub(crate) direction: Vector3<f64>,
 }
 
 /// A body's form, centred on its own origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// A box, by half its length, width and height.
     Box {
         /// Half of the extent along x, y, z.
@@ -35,19 +35,19 @@ pub enum Shape {
 
 /// A shape that stands somewhere.
 #[derive(Clone, Copy, Debug)]
-pub struct Solid {
+pub(crate) struct Solid {
     shape: Shape,
     solid_from_world: Pose,
 }
 
 impl Solid {
     /// A shape at a pose.
-    pub fn new(shape: Shape, world_from_solid: &Pose) -> Self {
+    pub(crate) fn new(shape: Shape, world_from_solid: &Pose) -> Self {
         Self { shape, solid_from_world: world_from_solid.inverse() }
     }
 
     /// The distance at which a ray of the world enters the body; a ray that starts inside has none.
-    pub fn entry_m(&self, ray: &Ray) -> Option<f64> {
+    pub(crate) fn entry_m(&self, ray: &Ray) -> Option<f64> {
         let origin = self.solid_from_world * ray.origin;
         let direction = self.solid_from_world * ray.direction;
         let inside = match self.shape {

@@ -39,18 +39,18 @@ const ROOF_M: [[f64; 3]; 2] = [[0.3, -0.6, 1.2], [1.8, 0.6, 1.5]];
 
 /// A thing with a box annotation.
 #[derive(Clone, Debug)]
-pub struct Track {
+pub(crate) struct Track {
     /// nuScenes category.
-    pub category: &'static str,
+    pub(crate) category: &'static str,
     /// Length, width, height of the annotated box.
-    pub size_m: [f64; 3],
+    pub(crate) size_m: [f64; 3],
     /// Where it goes.
-    pub path: Path,
+    pub(crate) path: Path,
 }
 
 impl Track {
     /// The annotated box's pose: its centre, x forward.
-    pub fn world_from_box(&self, time_s: f64) -> Pose {
+    pub(crate) fn world_from_box(&self, time_s: f64) -> Pose {
         let place = self.path.at(time_s);
         let centre_z_m = BOX_CLEARANCE_M + self.size_m[2] / 2.0;
         yaw_pose([place.x_m, place.y_m, centre_z_m], place.yaw_rad)
@@ -64,26 +64,26 @@ impl Track {
 
 /// What a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub(crate) struct Hit {
     /// Distance from the ray's origin.
-    pub distance_m: f64,
+    pub(crate) distance_m: f64,
     /// nuScenes category.
-    pub category: &'static str,
+    pub(crate) category: &'static str,
     /// Index into [`Street::tracks`], if it is a track.
-    pub track: Option<usize>,
+    pub(crate) track: Option<usize>,
 }
 
 /// The world of one scene.
 #[derive(Clone, Debug)]
-pub struct Street {
+pub(crate) struct Street {
     /// The annotated things, standing and moving.
-    pub tracks: Vec<Track>,
+    pub(crate) tracks: Vec<Track>,
     fixed: Vec<Body>,
 }
 
 /// The world at one time.
 #[derive(Clone, Debug)]
-pub struct StreetInstant {
+pub(crate) struct StreetInstant {
     bodies: Vec<Body>,
 }
 
@@ -96,13 +96,13 @@ struct Body {
 
 impl Street {
     /// The street of a scene; scenes differ in the speed of the oncoming cars.
-    pub fn new(scene: usize) -> Self {
+    pub(crate) fn new(scene: usize) -> Self {
         Self { tracks: tracks(8.0 + (scene % 5) as f64), fixed: houses().chain(trees()).collect() }
     }
 
     /// The street with people added, standing out of sight behind the houses, until there are
     /// `track_count` tracks: annotations without end at no cost to the rest.
-    pub fn with_crowd(mut self, track_count: usize) -> Self {
+    pub(crate) fn with_crowd(mut self, track_count: usize) -> Self {
         for number in self.tracks.len()..track_count {
             let path = Path::still(2.0 * (number % 50) as f64, -40.0 - 2.0 * (number / 50) as f64);
             self.tracks.push(person(path));
@@ -111,7 +111,7 @@ impl Street {
     }
 
     /// The world at a time, seconds from the scene's first keyframe, with the ego's body in it.
-    pub fn at(&self, time_s: f64, world_from_ego: &Pose) -> StreetInstant {
+    pub(crate) fn at(&self, time_s: f64, world_from_ego: &Pose) -> StreetInstant {
         let bodies = self.tracks.iter().enumerate().map(|(index, track)| Body {
             solid: Solid::new(track.shape(), &track.world_from_box(time_s)),
             category: track.category,
@@ -124,7 +124,7 @@ impl Street {
 
 impl StreetInstant {
     /// The nearest thing that a ray meets within `max_range_m`; of equally near ones the first.
-    pub fn cast(&self, ray: &Ray, max_range_m: f64) -> Option<Hit> {
+    pub(crate) fn cast(&self, ray: &Ray, max_range_m: f64) -> Option<Hit> {
         let bodies = self.bodies.iter().filter_map(|body| {
             let distance_m = body.solid.entry_m(ray)?;
             Some(Hit { distance_m, category: body.category, track: body.track })
@@ -137,7 +137,7 @@ impl StreetInstant {
 }
 
 /// What the ground is made of at a place.
-pub fn ground_category(x_m: f64, y_m: f64) -> &'static str {
+pub(crate) fn ground_category(x_m: f64, y_m: f64) -> &'static str {
     if y_m.abs() <= 4.0 || in_side_street(x_m, y_m) {
         DRIVEABLE
     } else if y_m.abs() <= 6.5 {

@@ -8,6 +8,8 @@ mod calibration;
 mod cameras;
 mod classes;
 mod deskew;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod doors;
 mod fused;
 mod layout;
 mod poses;

@@ -45,17 +45,17 @@ impl Poses {
         let imu_from_ego = calibration.ego_from_imu.inverse();
         if root.join(&of_imu).is_file() || !root.join(&of_camera).is_file() {
             let read = |line: &str| {
-                let [frame, rows @ ..] = numbers::<13>(line)?;
+                let [number, rows @ ..] = numbers::<13>(line)?;
                 let rows = rows.first_chunk().ok_or("no rows")?;
-                Ok((frame, pose_from_rows(rows)? * imu_from_ego))
+                Ok((frame(number)?, pose_from_rows(rows)? * imu_from_ego))
             };
             return Self::of_lines(root, &of_imu, read, notes);
         }
         let imu_from_camera = calibration.imu_from_camera("image_00")?;
         let camera_from_ego = rectification(root, 0)? * imu_from_camera.inverse() * imu_from_ego;
         let read = |line: &str| {
-            let [frame, rows @ ..] = numbers::<17>(line)?;
-            Ok((frame, pose_from_matrix(&rows)? * camera_from_ego))
+            let [number, rows @ ..] = numbers::<17>(line)?;
+            Ok((frame(number)?, pose_from_matrix(&rows)? * camera_from_ego))
         };
         Self::of_lines(root, &of_camera, read, notes)
     }
@@ -63,7 +63,7 @@ impl Poses {
     fn of_lines(
         root: &Path,
         file: &str,
-        read: impl Fn(&str) -> Result<(f64, Pose), String>,
+        read: impl Fn(&str) -> Result<(usize, Pose), String>,
         notes: &mut Notes,
     ) -> Result<Self, Fault> {
         let mut by_frame = BTreeMap::new();
@@ -72,9 +72,7 @@ impl Poses {
                 let fault = Fault::new("scan-pose", file, "a frame and its pose", found);
                 fault.record(format!("line {}", number + 1))
             });
-            // Frames are whole, and fit a float exactly.
-            let pose = notes.accept(Loss::Sweep, pose);
-            by_frame.extend(pose.map(|(frame, pose)| (frame as usize, pose)));
+            by_frame.extend(notes.accept(Loss::Sweep, pose));
         }
         Ok(Self { by_frame })
     }
@@ -104,6 +102,12 @@ impl Poses {
         }
         Some(part_way(from, to, share))
     }
+}
+
+/// A frame's number, which ten digits hold in the names of files.
+fn frame(number: f64) -> Result<usize, String> {
+    let is_frame = (0.0..1e10).contains(&number) && number.fract() == 0.0;
+    is_frame.then_some(number as usize).ok_or_else(|| format!("frame {number}"))
 }
 
 /// The pose at a share of the way: the place on a line, the rotation on an arc.

@@ -9,12 +9,12 @@ use super::points::Points;
 use super::samples::{TELLINGS, drive, file, options};
 use super::{McapLog, McapOptions};
 use crate::SceneSource;
-use crate::doors::in_file;
+use crate::doors::in_folder;
 
 /// A whole file, read as far as it goes; whether it was whole.
 pub(crate) fn read_file(bytes: &[u8]) -> bool {
     [false, true].into_iter().all(|recover| {
-        in_file(bytes, "a.mcap", |root| {
+        in_folder(&[("a.mcap", bytes)], |root| {
             let options = McapOptions { recover, ..options() };
             let Ok(log) = McapLog::open(root, options) else { return false };
             let _ = log.describe("a");

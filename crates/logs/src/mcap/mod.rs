@@ -44,7 +44,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, McapSettings, Scene, SweepHeader};
+use occlabel_core::{Fault, McapSettings, Scene, SweepHeader, reference_lidar};
 
 use crate::files::unreadable;
 use crate::names::{nearest_names, quoted};
@@ -176,15 +176,10 @@ impl SceneSource for McapLog {
 }
 
 fn defaults(lidars: &[String]) -> ReaderDefaults {
-    let auto = KeyframeSettings {
-        source: KeyframeSource::Annotated,
-        stride: 1,
-        reference_lidar: "auto".into(),
-    };
     ReaderDefaults {
         ego_box_m: None,
         taxonomy: "occ3d-nuscenes",
-        reference_lidar: auto.choose_lidar(lidars).unwrap_or_else(|| "LIDAR_TOP".into()),
+        reference_lidar: reference_lidar(lidars).cloned().unwrap_or_else(|| "LIDAR_TOP".into()),
     }
 }
 

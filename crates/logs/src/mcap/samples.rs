@@ -14,13 +14,10 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Cursor;
-use std::sync::Arc;
 
 use mcap::WriteOptions;
 use mcap::records::MessageHeader;
-use occlabel_core::{
-    ClassId, ClassSet, KeyframeSettings, KeyframeSource, McapSettings, Meaning, Taxonomy,
-};
+use occlabel_core::{ClassId, ClassSet, McapSettings, Meaning, Taxonomy};
 use serde_json::{Value, json};
 
 use super::ros::Layout;
@@ -129,13 +126,7 @@ pub(crate) fn options() -> McapOptions {
         points: BTreeMap::from([("rock".to_owned(), meaning)]),
         boxes: BTreeMap::from([("car".to_owned(), meaning)]),
     };
-    let keyframes = KeyframeSettings {
-        source: KeyframeSource::Annotated,
-        stride: 1,
-        reference_lidar: "auto".into(),
-    };
-    let unknown_as = Some(ClassId(0));
-    let read = ReadOptions { scenes: None, taxonomy: Arc::new(taxonomy), keyframes, unknown_as };
+    let read = ReadOptions { unknown_as: Some(ClassId(0)), ..ReadOptions::of(taxonomy) };
     let classes = BTreeMap::from([("7".to_owned(), "rock".to_owned())]);
     let settings = McapSettings { classes, max_record_bytes: 1 << 20, ..McapSettings::default() };
     McapOptions { read, settings, time_source: TimeSource::Header, recover: false }

@@ -29,7 +29,7 @@ mod tracks;
 use std::path::Path;
 use std::slice;
 
-use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, SweepHeader};
+use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 
 use crate::names::{nearest_names, quoted};
 use crate::raw_labels::RawLabels;
@@ -200,16 +200,11 @@ impl Version {
         };
         let names: Vec<String> =
             lidars.iter().map(|calibration| calibration.lidar.name().to_owned()).collect();
-        let auto = KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        };
         let top = lidars.iter().find(|calibration| calibration.lidar.name() == "TOP");
         Ok(ReaderDefaults {
             ego_box_m: top.map(body),
             taxonomy: "occ3d-waymo",
-            reference_lidar: auto.choose_lidar(&names).unwrap_or_else(|| "TOP".into()),
+            reference_lidar: reference_lidar(&names).cloned().unwrap_or_else(|| "TOP".into()),
         })
     }
 }

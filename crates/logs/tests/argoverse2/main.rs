@@ -8,12 +8,9 @@ mod packed;
 use std::cell::Cell;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use nalgebra::{Point3, Vector3};
-use occlabel_core::{
-    BoxGrowth, GrownBox, KeyframeSettings, KeyframeSource, Scene, SweepHeader, Taxonomy,
-};
+use occlabel_core::{BoxGrowth, GrownBox, Scene, SweepHeader};
 use occlabel_logs::{Argoverse2Log, ReadOptions, SceneSource};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -35,17 +32,7 @@ fn data() -> Option<PathBuf> {
 }
 
 fn options() -> ReadOptions {
-    let taxonomy: Taxonomy = toml::from_str(TAXONOMY).unwrap();
-    ReadOptions {
-        scenes: None,
-        taxonomy: Arc::new(taxonomy),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        },
-        unknown_as: None,
-    }
+    ReadOptions::of(toml::from_str(TAXONOMY).unwrap())
 }
 
 fn copy(from: &Path, to: &Path) {

@@ -63,6 +63,9 @@ fn fault_14_lines_that_are_no_poses_are_refused() {
         ("1 1 0 0 1 0 1 0 50 0 0 -1 100.93", "a determinant of -1"),
         ("1 1 0 0 1 0 -1 0 50 0 0 -1", "12 numbers"),
         ("1 1 0.1 0 1 0 -1 0 50 0 0 -1 100.93", "off a rotation"),
+        ("1.5 1 0 0 1 0 -1 0 50 0 0 -1 100.93", "frame 1.5"),
+        ("-1 1 0 0 1 0 -1 0 50 0 0 -1 100.93", "frame -1"),
+        ("1e20 1 0 0 1 0 -1 0 50 0 0 -1 100.93", "frame 100000000000000000000"),
     ] {
         let root = bare();
         let lines = poses().replace("1 1 0 0 1 0 -1 0 50 0 0 -1 100.93", line);

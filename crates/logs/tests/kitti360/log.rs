@@ -3,9 +3,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, Taxonomy};
+use occlabel_core::{Fault, Scene};
 use occlabel_logs::{Kitti360Log, ReadOptions, SceneSource};
 use tempfile::TempDir;
 
@@ -47,17 +46,7 @@ pub(crate) const POINTS: [[f32; 4]; 4] = [
 ];
 
 pub(crate) fn options() -> ReadOptions {
-    let taxonomy: Taxonomy = toml::from_str(TAXONOMY).unwrap();
-    ReadOptions {
-        scenes: None,
-        taxonomy: Arc::new(taxonomy),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        },
-        unknown_as: None,
-    }
+    ReadOptions::of(toml::from_str(TAXONOMY).unwrap())
 }
 
 pub(crate) fn put(root: &TempDir, file: &str, bytes: impl AsRef<[u8]>) {

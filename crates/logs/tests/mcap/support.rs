@@ -2,11 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use occlabel_core::{
-    ClassSet, KeyframeSettings, KeyframeSource, McapSettings, Meaning, Pose, Taxonomy,
-};
+use occlabel_core::{ClassSet, McapSettings, Meaning, Pose, Taxonomy};
 use occlabel_logs::{McapLog, McapOptions, ReadOptions, TimeSource};
 
 /// One class, `thing`, that these box categories mean.
@@ -27,17 +24,8 @@ pub(crate) fn taxonomy(boxes: &[&str]) -> Taxonomy {
 }
 
 pub(crate) fn options(boxes: &[&str], settings: McapSettings) -> McapOptions {
-    let keyframes = KeyframeSettings {
-        source: KeyframeSource::Annotated,
-        stride: 1,
-        reference_lidar: "auto".into(),
-    };
-    let read = ReadOptions {
-        scenes: None,
-        taxonomy: Arc::new(taxonomy(boxes)),
-        keyframes,
-        unknown_as: Some(occlabel_core::ClassId(0)),
-    };
+    let unknown_as = Some(occlabel_core::ClassId(0));
+    let read = ReadOptions { unknown_as, ..ReadOptions::of(taxonomy(boxes)) };
     McapOptions { read, settings, time_source: TimeSource::Header, recover: false }
 }
 

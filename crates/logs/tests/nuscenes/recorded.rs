@@ -1,9 +1,7 @@
 //! A recorded drive: KITTI 0005 in the layout of nuScenes.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
-use occlabel_core::{KeyframeSettings, KeyframeSource};
 use occlabel_logs::{
     Inventory, NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource,
 };
@@ -25,16 +23,7 @@ fn a_recorded_drive_is_read_as_its_makers_counted_it() {
         return;
     };
     let options = NuScenesOptions {
-        read: ReadOptions {
-            scenes: None,
-            taxonomy: Arc::new(taxonomy()),
-            keyframes: KeyframeSettings {
-                source: KeyframeSource::Annotated,
-                stride: 1,
-                reference_lidar: "auto".into(),
-            },
-            unknown_as: Some(CAR),
-        },
+        read: ReadOptions { unknown_as: Some(CAR), ..ReadOptions::of(taxonomy()) },
         version: None,
         quaternion_order: QuaternionOrder::Wxyz,
         columns: None,

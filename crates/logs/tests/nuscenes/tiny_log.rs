@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use occlabel_core::{ClassId, Fault, KeyframeSettings, KeyframeSource, Scene, Taxonomy};
+use occlabel_core::{ClassId, Fault, KeyframeSettings, Scene, Taxonomy};
 use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -27,11 +26,7 @@ pub(crate) struct TinyLog {
 
 impl TinyLog {
     pub(crate) fn new() -> Self {
-        let keyframes = KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        };
+        let keyframes = KeyframeSettings::annotated();
         let files = ["l0", "l1", "l2"]
             .into_iter()
             .zip([0.0, 1.0, 2.0])
@@ -81,12 +76,7 @@ impl TinyLog {
     /// Opens a log that is written already.
     pub(crate) fn open_in(&self, root: &Path) -> Result<NuScenesLog, Fault> {
         let mut options = NuScenesOptions {
-            read: ReadOptions {
-                scenes: None,
-                taxonomy: Arc::new(taxonomy()),
-                keyframes: self.keyframes.clone(),
-                unknown_as: None,
-            },
+            read: ReadOptions { keyframes: self.keyframes.clone(), ..ReadOptions::of(taxonomy()) },
             version: None,
             quaternion_order: QuaternionOrder::Wxyz,
             columns: None,

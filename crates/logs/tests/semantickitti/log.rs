@@ -3,9 +3,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, Taxonomy};
+use occlabel_core::{Fault, Scene, Taxonomy};
 use occlabel_logs::{ReadOptions, SceneSource, SemanticKittiLog};
 use serde_json::json;
 use tempfile::TempDir;
@@ -34,16 +33,7 @@ pub(crate) fn taxonomy() -> Taxonomy {
 }
 
 pub(crate) fn options() -> ReadOptions {
-    ReadOptions {
-        scenes: None,
-        taxonomy: Arc::new(taxonomy()),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        },
-        unknown_as: None,
-    }
+    ReadOptions::of(taxonomy())
 }
 
 /// The log, sequence `00`.

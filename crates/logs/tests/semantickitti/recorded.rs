@@ -2,13 +2,10 @@
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use nalgebra::Point3;
-use occlabel_core::{ClassId, PointLabel, Scene, Taxonomy};
+use occlabel_core::{ClassId, PointLabel, Scene};
 use occlabel_logs::{ReadOptions, SceneSource, SemanticKittiLog};
-
-use crate::log::options;
 
 /// Points nearer than this are neighbours, metres.
 const NEAR_M: f64 = 0.2;
@@ -25,9 +22,9 @@ fn recorded() -> Option<SemanticKittiLog> {
         println!("skipped: no semantickitti in $OCCLABEL_DATA or ../shared/data");
         return None;
     }
-    let taxonomy: Taxonomy = toml::from_str(TAXONOMY).unwrap();
     let scenes = Some(["00".to_owned()].into());
-    let options = ReadOptions { scenes, taxonomy: Arc::new(taxonomy), ..options() };
+    let all = ReadOptions::of(toml::from_str(TAXONOMY).unwrap());
+    let options = ReadOptions { scenes, ..all };
     Some(SemanticKittiLog::open(&root, options).unwrap())
 }
 

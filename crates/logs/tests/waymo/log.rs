@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use occlabel_core::{Fault, KeyframeSettings, KeyframeSource, Scene, Taxonomy};
+use occlabel_core::{Fault, Scene, Taxonomy};
 use occlabel_logs::{ReadOptions, SceneSource, SweepPoints, WaymoLog};
 use serde_json::{Map, Value, json};
 use tempfile::TempDir;
@@ -56,16 +55,7 @@ pub(crate) fn taxonomy() -> Taxonomy {
 }
 
 pub(crate) fn options() -> ReadOptions {
-    ReadOptions {
-        scenes: None,
-        taxonomy: Arc::new(taxonomy()),
-        keyframes: KeyframeSettings {
-            source: KeyframeSource::Annotated,
-            stride: 1,
-            reference_lidar: "auto".into(),
-        },
-        unknown_as: None,
-    }
+    ReadOptions::of(taxonomy())
 }
 
 pub(crate) fn fixtures() -> PathBuf {

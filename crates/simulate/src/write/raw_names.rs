@@ -6,41 +6,8 @@ use occlabel_core::{Fault, Taxonomy};
 
 use crate::{Drive, World};
 
-/// The categories of nuScenes in the order of their lidarseg index.
-const NUSCENES: [&str; 32] = [
-    "noise",
-    "animal",
-    "human.pedestrian.adult",
-    "human.pedestrian.child",
-    "human.pedestrian.construction_worker",
-    "human.pedestrian.personal_mobility",
-    "human.pedestrian.police_officer",
-    "human.pedestrian.stroller",
-    "human.pedestrian.wheelchair",
-    "movable_object.barrier",
-    "movable_object.debris",
-    "movable_object.pushable_pullable",
-    "movable_object.trafficcone",
-    "static_object.bicycle_rack",
-    "vehicle.bicycle",
-    "vehicle.bus.bendy",
-    "vehicle.bus.rigid",
-    "vehicle.car",
-    "vehicle.construction",
-    "vehicle.emergency.ambulance",
-    "vehicle.emergency.police",
-    "vehicle.motorcycle",
-    "vehicle.trailer",
-    "vehicle.truck",
-    "flat.driveable_surface",
-    "flat.other",
-    "flat.sidewalk",
-    "flat.terrain",
-    "static.manmade",
-    "static.other",
-    "static.vegetation",
-    "vehicle.ego",
-];
+/// The categories of nuScenes in the order of their lidarseg index, a line each.
+const NUSCENES: &str = include_str!("nuscenes/categories.txt");
 
 /// The raw names of a log: nuScenes' own, numbered as there, if they name everything in its worlds;
 /// else all names of the taxonomy, points' and boxes', in byte order.
@@ -59,8 +26,9 @@ impl<'a> RawNames<'a> {
     /// If a byte cannot number them.
     pub(crate) fn new(drives: &[Drive], taxonomy: &'a Taxonomy) -> Result<Self, Fault> {
         let mut used = drives.iter().flat_map(|drive| used(drive.world()));
-        let names = match used.all(|name| NUSCENES.contains(&name)) {
-            true => NUSCENES.to_vec(),
+        let nuscenes: Vec<&str> = NUSCENES.lines().collect();
+        let names = match used.all(|name| nuscenes.contains(&name)) {
+            true => nuscenes,
             false => all(taxonomy).into_iter().collect(),
         };
         if names.len() > 256 {

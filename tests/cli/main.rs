@@ -1,0 +1,15 @@
+//! The command line as the contract has it: what goes in, what comes out, and how it ends.
+
+mod arrays;
+mod configuration;
+#[cfg(unix)]
+mod interrupted;
+mod labelled;
+mod lines;
+mod memory;
+mod parts;
+mod records;
+mod resume;
+mod streams;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,107 @@
+//! Which part of a log is labelled.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::labelled::{labelled, strings};
+use crate::support::{
+    Ended, Label, SCENE, TestLog, gts_files, leftovers, manifest, nano_spec, text, tree_hash,
+};
+
+#[test]
+fn an_unknown_scene_or_keyframe_exits_with_2_and_is_named() {
+    let log = TestLog::nano();
+    let label = Label::new(&log.root(), &log.beside("out")).small();
+    label
+        .clone()
+        .with(&["--scenes", "scene-0002"])
+        .run()
+        .exits(2)
+        .tells(&["scene-0002", "scene-0001"]);
+    label.clone().with(&["--keyframes", "abc"]).run().exits(2).tells(&["abc", "inspect"]);
+    assert!(!label.output.exists());
+}
+
+#[test]
+fn scenes_can_be_named_or_listed_in_a_file() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let list = log.beside("list.txt");
+    fs::write(&list, "\nscene-0002\n").expect("written");
+    let named =
+        Label::new(&log.root(), &log.beside("named")).small().with(&["--scenes", "scene-0002"]);
+    let listed = Label::new(&log.root(), &log.beside("listed"))
+        .small()
+        .with(&["--scenes-from", text(&list)]);
+    named.run().exits(0);
+    listed.run().exits(0);
+    assert_eq!(tree_hash(&named.output), tree_hash(&listed.output));
+    assert!(gts_files(&named.output).keys().all(|name| name.starts_with("scene-0002/")));
+}
+
+#[test]
+fn scenes_can_be_listed_on_stdin() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let label = Label::new(&log.root(), &log.beside("out")).small();
+    let mut command = label.with(&["--scenes-from", "-", "--dry-run"]).command();
+    fs::write(log.beside("list.txt"), "scene-0002\n").expect("written");
+    let list = fs::File::open(log.beside("list.txt")).expect("a list");
+    let ended = Ended::of(command.stdin(list).output().expect("the program starts")).exits(0);
+    assert!(ended.stdout.contains("scene-0002") && !ended.stdout.contains("scene-0001"));
+}
+
+#[test]
+fn every_sweep_or_every_nth_can_be_a_keyframe() {
+    let log = TestLog::nano();
+    let of_sweeps = ["--set", "keyframes.source=sweeps"];
+    let all = Label::new(&log.root(), &log.beside("all")).small().with(&of_sweeps);
+    all.run().exits(0);
+    assert_eq!(gts_files(&all.output).len(), 9);
+    let fourth = Label::new(&log.root(), &log.beside("fourth")).small().with(&of_sweeps);
+    let fourth = fourth.with(&["--set", "keyframes.stride=4"]);
+    fourth.run().exits(0);
+    let annotated: Vec<String> = gts_files(&labelled(&[]).1.output).into_keys().collect();
+    assert_eq!(gts_files(&fourth.output).into_keys().collect::<Vec<_>>(), annotated);
+}
+
+#[test]
+fn keyframes_limit_what_is_written_not_what_is_aggregated() {
+    let (log, label) = labelled(&[]);
+    let tokens = log.keyframes();
+    let some = Label::new(&log.root(), &log.beside("some")).small();
+    some.clone().with(&["--keyframes", &format!("{},{}", tokens[2], tokens[0])]).run().exits(0);
+    let (all, some_files) = (gts_files(&label.output), gts_files(&some.output));
+    assert_eq!(some_files.len(), 2);
+    assert!(some_files.iter().all(|(name, bytes)| all[name] == *bytes));
+    let listed = strings(&manifest(&some.output)["scenes"][SCENE]["keyframes"]);
+    assert_eq!(listed, [tokens[0].clone(), tokens[2].clone()]);
+}
+
+#[test]
+fn shards_share_the_scenes_and_one_tree() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let (whole, shared) = (log.beside("whole"), log.beside("shared"));
+    Label::new(&log.root(), &whole).small().run().exits(0);
+    for (shard, scene) in [("0/2", "scene-0001"), ("1/2", "scene-0002")] {
+        Label::new(&log.root(), &shared).small().with(&["--shard", shard]).run().exits(0);
+        let name = format!("manifest.{}.json", shard.replace('/', "-of-"));
+        let bytes = fs::read(shared.join(name)).expect("a shard's manifest");
+        let manifest: Value = serde_json::from_slice(&bytes).expect("JSON");
+        let scenes: Vec<_> = manifest["scenes"].as_object().expect("scenes").keys().collect();
+        assert_eq!(scenes, [scene]);
+    }
+    assert!(gts_files(&whole) == gts_files(&shared), "shards write other bytes");
+    assert!(!shared.join("manifest.json").exists());
+    assert_eq!(leftovers(&shared), [""; 0]);
+}
+
+#[test]
+fn a_dry_run_tells_and_writes_nothing() {
+    let log = TestLog::nano();
+    let label = Label::new(&log.root(), &log.beside("out")).small().with(&["--dry-run"]);
+    let told = label.run().exits(0).stdout;
+    for word in [SCENE, "3 keyframes", "rays", "bytes"] {
+        assert!(told.contains(word), "{word} in\n{told}");
+    }
+    assert!(!label.output.exists());
+}
