@@ -23,7 +23,14 @@ use occlabel_logs::{
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 
 /// Formats that `occlabel simulate` writes.
-const WRITTEN: [&str; 3] = ["nuscenes", "mcap", "semantickitti"];
+const WRITTEN: &[&str] = &[
+    "nuscenes",
+    "mcap",
+    "semantickitti",
+    "waymo",
+    #[cfg(feature = "waymo-v2")]
+    "waymo-v2",
+];
 /// Of a crossing, so many seconds: 80 sweeps of 32 beams.
 const SHORTER: [&str; 4] = ["--set", "duration_s=4", "--images", "none"];
 /// The fastest of so many tries counts.
@@ -33,7 +40,7 @@ fn main() {
     let args: Vec<String> = std::env::args().skip(1).filter(|arg| arg != "--bench").collect();
     let rows = match args.as_slice() {
         [format, root] => vec![measure(format, Path::new(root))],
-        _ => WRITTEN.map(simulated).to_vec(),
+        _ => WRITTEN.iter().map(|format| simulated(format)).collect(),
     };
     println!("format             MB    points   plain MB/s   read MB/s   ratio   Mpoints/s");
     rows.iter().for_each(|row| println!("{row}"));
@@ -121,7 +128,9 @@ fn open(format: &str, root: &Path) -> Box<dyn SceneSource> {
             Box::new(Kitti360Log::open(root, options(format)).expect("a log"))
         }
         "semantickitti" => Box::new(SemanticKittiLog::open(root, options(format)).expect("a log")),
-        "waymo" => Box::new(WaymoLog::open(root, options("occ3d-waymo")).expect("a log")),
+        "waymo" | "waymo-v2" => {
+            Box::new(WaymoLog::open(root, options("occ3d-waymo")).expect("a log"))
+        }
         "av2" => Box::new(Argoverse2Log::open(root, options("argoverse2")).expect("a log")),
         other => panic!("no format `{other}`"),
     }
