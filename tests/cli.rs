@@ -83,6 +83,27 @@ fn an_input_that_is_none_exits_with_2() {
 }
 
 #[test]
+fn a_wrong_format_is_told_the_right_one() {
+    let log = TestLog::nano();
+    let wrong = |format: &str, root: &Path| {
+        occlabel(&["inspect", "--format", format, "--input", text(root)]).exits(2)
+    };
+    for format in ["waymo", "semantickitti", "mcap", "av2"] {
+        wrong(format, &log.root()).tells(&["hint: it looks like `--format nuscenes`"]);
+    }
+    wrong("waymo", &log.beside("")).tells_nothing_of("looks like");
+    fs::create_dir_all(log.beside("kitti/sequences/00/velodyne")).expect("folders");
+    for format in ["nuscenes", "waymo", "mcap"] {
+        wrong(format, &log.beside("kitti")).tells(&["it looks like `--format semantickitti`"]);
+    }
+    let file = log.beside("drive.mcap");
+    fs::write(&file, b"").expect("a file");
+    let folder = format!("give its folder: `--input {}`", log.beside("").display());
+    let folder = folder.replace("/`", "`");
+    wrong("mcap", &file).tells(&["drive.mcap", "found a file", &folder]);
+}
+
+#[test]
 fn every_preset_is_listed_and_can_be_fed_back() {
     let list = occlabel(&["presets"]).exits(0).stdout;
     let names: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
@@ -479,6 +500,16 @@ fn results_go_to_stdout_and_all_else_to_stderr() {
     let ended = Label::new(&log.root(), &log.beside("out")).small().run().exits(0);
     assert!(ended.stdout.contains("3 keyframes") && !ended.stdout.contains("warning"));
     ended.tells(&["warning", "expected points, found none"]).tells_nothing_of("3 keyframes");
+}
+
+#[test]
+fn a_total_is_told_of_several_scenes_only() {
+    let log = TestLog::nano();
+    let one = Label::new(&log.root(), &log.beside("out")).small().run().exits(0).stdout;
+    assert!(one.lines().count() == 1 && one.starts_with(SCENE), "{one}");
+    let log = TestLog::simulated(&occlabel_testkit::LogSpec { scenes: 2, ..nano_spec() });
+    let two = Label::new(&log.root(), &log.beside("out")).small().run().exits(0).stdout;
+    assert!(two.lines().count() == 3 && two.contains("\n2 scenes: "), "{two}");
 }
 
 #[test]

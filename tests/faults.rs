@@ -406,6 +406,19 @@ fn fault_12_a_nan_in_a_pose_is_refused() {
 }
 
 #[test]
+fn fault_19_a_pose_beyond_a_thousand_million_metres_is_refused() {
+    let log = TestLog::nano();
+    let sweep = &log.sweeps()[4];
+    log.edit("ego_pose", |rows| {
+        let row = rows.iter_mut().find(|row| row["token"] == sweep["ego_pose_token"]);
+        row.expect("a pose")["translation"] = json!([1e300, 0.0, 0.0]);
+    });
+    assert_refused(&label(&log), &["ego_pose.json", "at most 1e9 m", "1e300"]);
+    let keyframes = keyframes_without(&log, 1);
+    assert_skipped(&label_into(&log, "skip"), "translation", &keyframes);
+}
+
+#[test]
 fn fault_12_a_refused_pose_of_a_key_sweep_takes_the_keyframe_along() {
     let log = TestLog::nano();
     let sweep = &log.sweeps()[4];
