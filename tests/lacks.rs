@@ -228,6 +228,8 @@ fn flags_of_another_format_are_refused() {
         ("av2", &["--columns", "4"], "nuscenes"),
         ("nuscenes", &["--time-source", "header"], "mcap"),
         ("semantickitti", &["--recover"], "mcap"),
+        ("nuscenes", &["--set", "reader.mcap.ego_frame=hull"], "mcap"),
+        ("waymo", &["--set", "reader . mcap.classes.7=CAR"], "mcap"),
     ] {
         for command in ["label", "inspect"] {
             let line = [&[command, "--format", format, "--input", log], flag].concat();

@@ -48,7 +48,9 @@ fn the_other_formats_stand_under_their_own_names() {
     let kitti = ("semantickitti", "sequences/00/poses.txt");
     for (format, file) in [kitti, ("mcap", "street.mcap"), ("waymo", "street.tfrecord")] {
         let log = folder.path().join(format);
-        occlabel(&simulate(format, text(&log), &[])).exits(0);
+        let told = occlabel(&simulate(format, text(&log), &[])).exits(0).stdout;
+        let line = format!("label it with  occlabel label --format {format} --input ");
+        assert!(told.contains(&line), "{told}");
         let files = files_under(&log);
         assert!(files.contains_key(file) && files.contains_key("truth/world.toml"), "{files:?}");
     }
@@ -89,5 +91,8 @@ fn what_cannot_be_simulated_exits_with_2() {
     let model = format!("camera.CAM_BACK.model={{ kannala-brandt = {lens} }}");
     let fisheye = ["--set", &model];
     refused(&fisheye, "waymo").tells(&["camera.CAM_BACK.model", "kannala-brandt"]);
-    assert!(files_under(&out).is_empty());
+    assert!(!out.exists(), "no folder without a log");
+    fs::create_dir(&out).expect("a folder");
+    refused(&fisheye, "waymo");
+    assert!(out.is_dir() && files_under(&out).is_empty(), "a folder that was there stays");
 }

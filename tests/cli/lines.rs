@@ -46,6 +46,27 @@ fn an_input_that_is_none_exits_with_2() {
 }
 
 #[test]
+fn a_wrong_format_is_told_the_right_one() {
+    let log = TestLog::nano();
+    let wrong = |format: &str, root: &Path| {
+        occlabel(&["inspect", "--format", format, "--input", text(root)]).exits(2)
+    };
+    for format in ["waymo", "semantickitti", "mcap", "av2"] {
+        wrong(format, &log.root()).tells(&["hint: it looks like `--format nuscenes`"]);
+    }
+    wrong("waymo", &log.beside("")).tells_nothing_of("looks like");
+    fs::create_dir_all(log.beside("kitti/sequences/00/velodyne")).expect("folders");
+    for format in ["nuscenes", "waymo", "mcap"] {
+        wrong(format, &log.beside("kitti")).tells(&["it looks like `--format semantickitti`"]);
+    }
+    let file = log.beside("drive.mcap");
+    fs::write(&file, b"").expect("a file");
+    let folder = format!("give its folder: `--input {}`", log.beside("").display());
+    let folder = folder.replace("/`", "`");
+    wrong("mcap", &file).tells(&["drive.mcap", "found a file", &folder]);
+}
+
+#[test]
 fn every_preset_is_listed_and_can_be_fed_back() {
     let list = occlabel(&["presets"]).exits(0).stdout;
     let names: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();

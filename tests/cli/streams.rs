@@ -14,6 +14,16 @@ fn results_go_to_stdout_and_all_else_to_stderr() {
 }
 
 #[test]
+fn a_total_is_told_of_several_scenes_only() {
+    let log = TestLog::nano();
+    let one = Label::new(&log.root(), &log.beside("out")).small().run().exits(0).stdout;
+    assert!(one.lines().count() == 1 && one.starts_with(SCENE), "{one}");
+    let log = TestLog::simulated(&occlabel_testkit::LogSpec { scenes: 2, ..nano_spec() });
+    let two = Label::new(&log.root(), &log.beside("out")).small().run().exits(0).stdout;
+    assert!(two.lines().count() == 3 && two.contains("\n2 scenes: "), "{two}");
+}
+
+#[test]
 fn quiet_leaves_results_and_errors() {
     let log = TestLog::nano();
     log.empty(&log.other_files()[0]);

@@ -1,4 +1,4 @@
-//! Rotations that are none (case 12).
+//! Rotations that are none (case 12), and places far beyond (case 19).
 
 use serde_json::{Value, json};
 
@@ -57,6 +57,19 @@ fn fault_12_a_nan_in_a_pose_is_refused() {
     });
     assert_refused(&label(&log), &["ego_pose.json", "norm NaN"]);
     assert_skipped(&label_into(&log, "skip"), "quaternion-norm", &log.keyframes());
+}
+
+#[test]
+fn fault_19_a_pose_beyond_a_thousand_million_metres_is_refused() {
+    let log = TestLog::nano();
+    let sweep = &log.sweeps()[4];
+    log.edit("ego_pose", |rows| {
+        let row = rows.iter_mut().find(|row| row["token"] == sweep["ego_pose_token"]);
+        row.expect("a pose")["translation"] = json!([1e300, 0.0, 0.0]);
+    });
+    assert_refused(&label(&log), &["ego_pose.json", "at most 1e9 m", "1e300"]);
+    let keyframes = keyframes_without(&log, 1);
+    assert_skipped(&label_into(&log, "skip"), "translation", &keyframes);
 }
 
 #[test]

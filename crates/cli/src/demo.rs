@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use occlabel_core::{Fault, Palette};
 use occlabel_labels::{LabelTree, Manifest, TreePath, create_dir, read_labels, write_file};
 use occlabel_simulate::shipped_world;
 use occlabel_view::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
 
-use crate::args::{Cli, DemoArgs};
+use crate::args::{Cli, DemoArgs, Format};
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
+use crate::format_flags::name;
 
 /// The world that is driven through.
 const WORLD: &str = "street";
@@ -84,7 +85,12 @@ fn write_pictures(labels: &Painted, pictures: &Path) -> Result<(), Fault> {
     write_file(&pictures.join("perspective.png"), &png(&behind))
 }
 
+/// Formats are named by the list that the program takes.
 fn tell_next(console: &Console) {
-    console.result("Your log    occlabel label --format nuscenes --input DIR --output LABELS");
-    console.result("Its quality occlabel quality --held-out 5 --format nuscenes --input DIR");
+    let formats: Vec<String> =
+        Format::value_variants().iter().map(|format| name(*format)).collect();
+    let formats = formats.join("|");
+    console.result(&format!("Your log    occlabel check --format {formats} --input DIR"));
+    console.result("            occlabel label --format FORMAT --input DIR --output LABELS");
+    console.result("Its quality occlabel quality --held-out 5 --format FORMAT --input DIR");
 }

@@ -3,16 +3,17 @@
 use clap::ValueEnum;
 use occlabel_core::Fault;
 
-use crate::args::{Format, LogArgs};
+use crate::args::{ConfigArgs, Format, LogArgs};
 
 /// Refuses a flag that the log's format would not use.
-pub(crate) fn check_flags(log: &LogArgs) -> Result<(), Fault> {
+pub(crate) fn check_flags(log: &LogArgs, config: &ConfigArgs) -> Result<(), Fault> {
     let flags = [
         ("--version", log.version.is_some(), Format::Nuscenes),
         ("--quat-order", log.quat_order.is_some(), Format::Nuscenes),
         ("--columns", log.columns.is_some(), Format::Nuscenes),
         ("--time-source", log.time_source.is_some(), Format::Mcap),
         ("--recover", log.recover, Format::Mcap),
+        ("--set reader.mcap", config.settings.iter().any(|set| is_mcap_key(set)), Format::Mcap),
     ];
     let is_unused = |(_, is_given, format): &(_, bool, Format)| *is_given && *format != log.format;
     match flags.into_iter().find(is_unused) {
@@ -24,8 +25,14 @@ pub(crate) fn check_flags(log: &LogArgs) -> Result<(), Fault> {
     }
 }
 
+/// Whether a setting `table.key=VALUE` is one of `[reader.mcap]`.
+fn is_mcap_key(setting: &str) -> bool {
+    let path = setting.split('=').next().unwrap_or_default();
+    path.split('.').map(str::trim).take(2).eq(["reader", "mcap"])
+}
+
 /// A format as it is written on the command line.
-fn name(format: Format) -> String {
+pub(crate) fn name(format: Format) -> String {
     let value = format.to_possible_value();
     value.map_or_else(String::new, |value| value.get_name().to_owned())
 }

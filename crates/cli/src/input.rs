@@ -17,6 +17,7 @@ use occlabel_pipeline::{
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
 use crate::format_flags::check_flags;
+use crate::format_hint::{check_input, with_format};
 use crate::presets::unknown_preset;
 
 /// A log, and what decides its labels.
@@ -43,10 +44,11 @@ pub(crate) fn open_with(
     stand_in: Option<ClassId>,
 ) -> Result<Opened, Stop> {
     let (preset, mut config) = read_config(args).map_err(Stop::usage)?;
-    check_flags(log).map_err(Stop::usage)?;
-    check_input(log).map_err(Stop::usage)?;
+    check_flags(log, args).map_err(Stop::usage)?;
+    check_input(&log.input).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
-    let autos = autos(log, &mut config.reader).map_err(usage_or_failed)?;
+    let stop = |fault| usage_or_failed(with_format(fault, log));
+    let autos = autos(log, &mut config.reader).map_err(stop)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
@@ -57,7 +59,7 @@ pub(crate) fn open_with(
         keyframes: config.keyframes.clone(),
     };
     let mcap = config.reader.mcap.clone();
-    let source = open_format(log, options, mcap).map_err(usage_or_failed)?;
+    let source = open_format(log, options, mcap).map_err(stop)?;
     Ok(Opened { source, preset, config, taxonomy_hash, rules })
 }
 
@@ -191,14 +193,6 @@ fn read_text(path: &Path) -> Result<String, Fault> {
             error.to_string(),
         )
     })
-}
-
-fn check_input(log: &LogArgs) -> Result<(), Fault> {
-    if log.input.is_dir() {
-        return Ok(());
-    }
-    let found = if log.input.exists() { "something else" } else { "nothing" };
-    Err(Fault::new("input", log.input.display().to_string(), "a log's root folder", found))
 }
 
 fn wanted_scenes(log: &LogArgs) -> Result<Option<BTreeSet<String>>, Fault> {

@@ -18,6 +18,7 @@ mod console;
 mod demo;
 mod exit;
 mod format_flags;
+mod format_hint;
 mod input;
 mod inspect;
 mod interrupt;

@@ -9,9 +9,10 @@ use occlabel_simulate::{
     write_nuscenes, write_semantickitti, write_waymo,
 };
 
-use crate::args::{ImagesArg, SimulateArgs, WrittenFormat};
+use crate::args::{Format, ImagesArg, SimulateArgs, WrittenFormat};
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
+use crate::format_flags::name;
 
 pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Stop> {
     let worlds = worlds(args).map_err(Stop::usage)?;
@@ -24,9 +25,7 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
     let (written, last) = write(args, &drives, &taxonomy, &output).map_err(usage_or_failed)?;
     let size = output.finish(&last)?;
     tell(&written, size, console);
-    if args.format == WrittenFormat::Nuscenes {
-        console.result(&format!("label it with  {}", label_line(args, &worlds[0].1)));
-    }
+    console.result(&format!("label it with  {}", label_line(args, &worlds[0].1)));
     Ok(Outcome::Complete)
 }
 
@@ -141,12 +140,22 @@ fn tell(written: &Written, (files, bytes): (usize, u64), console: &Console) {
     }
 }
 
-/// The line that labels the log; a nuScenes log is taken for one of its own taxonomy.
+/// The line that labels the log. nuScenes and MCAP hold the world's own names and are taken for logs of
+/// nuScenes' taxonomy; the others have words of their own.
 fn label_line(args: &SimulateArgs, world: &World) -> String {
     let input = Path::new(&args.output).display();
-    let line = format!("occlabel label --format nuscenes --input {input} --output LABELS");
+    let (format, has_own_names) = match args.format {
+        WrittenFormat::Nuscenes => (Format::Nuscenes, true),
+        WrittenFormat::Mcap => (Format::Mcap, true),
+        WrittenFormat::Semantickitti => (Format::Semantickitti, false),
+        WrittenFormat::Waymo | WrittenFormat::WaymoV2 => (Format::Waymo, false),
+    };
+    let format = name(format);
+    let line = format!("occlabel label --format {format} --input {input} --output LABELS");
     match world.taxonomy.as_str() {
-        "occ3d-nuscenes" => line,
-        taxonomy => format!("{line} --set taxonomy.file={taxonomy}"),
+        taxonomy if has_own_names && taxonomy != "occ3d-nuscenes" => {
+            format!("{line} --set taxonomy.file={taxonomy}")
+        }
+        _ => line,
     }
 }

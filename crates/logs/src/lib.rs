@@ -24,6 +24,7 @@ mod check;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
 mod files;
+mod formats;
 mod image_files;
 mod inventory;
 mod keyframes;
@@ -49,6 +50,7 @@ mod wire;
 
 pub use argoverse2::Argoverse2Log;
 pub use check::{Finding, SceneSurvey, Severity, SweepSurvey, UnknownSum, check_poses};
+pub use formats::looks_like;
 pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;

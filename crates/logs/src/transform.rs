@@ -6,17 +6,33 @@ use occlabel_core::Pose;
 /// How far from a rotation a matrix may be, largest element of R R^T - 1: beyond it, it tells none.
 const LARGEST_ERROR: f64 = 1e-4;
 
+/// Nothing stands farther than this from its frame's origin along any axis, metres: no place on Earth
+/// does, and steps of f64 are a tenth of a micrometre there.
+const LARGEST_PLACE_M: f64 = 1e9;
+
+/// What every place has to be.
+pub(crate) const A_PLACE: &str = "finite numbers of at most 1e9 m";
+
+/// Whether these are metres of a place: finite, and at most 1e9.
+pub(crate) fn is_place<'a>(metres: impl IntoIterator<Item = &'a f64>) -> bool {
+    metres.into_iter().all(|metres| metres.abs() <= LARGEST_PLACE_M)
+}
+
 /// The pose of a rigid transform's 4 x 4 matrix, rows first, its rotation made exactly one.
 ///
 /// # Errors
 /// What was found, if that is not 16 finite numbers, or no rigid transform: mirrored, skewed or
-/// scaled by more than 1e-4.
+/// scaled by more than 1e-4, or by more than 1e9 m from the origin.
 pub(crate) fn pose_from_matrix(numbers: &[f64]) -> Result<Pose, String> {
     let Ok(numbers) = <&[f64; 16]>::try_from(numbers) else {
         return Err(format!("{} numbers", numbers.len()));
     };
     if !numbers.iter().all(|number| number.is_finite()) {
         return Err("a number that is not finite".into());
+    }
+    let place = [numbers[3], numbers[7], numbers[11]];
+    if !is_place(&place) {
+        return Err(format!("a place {place:?} m, beyond 1e9 m"));
     }
     let matrix = Matrix4::from_row_slice(numbers);
     if numbers[12..] != [0.0, 0.0, 0.0, 1.0] {
@@ -30,15 +46,14 @@ pub(crate) fn pose_from_matrix(numbers: &[f64]) -> Result<Pose, String> {
     if error > LARGEST_ERROR {
         return Err(format!("a matrix that is off a rotation by {error}"));
     }
-    let offset = Translation3::new(numbers[3], numbers[7], numbers[11]);
-    Ok(Pose::from_parts(offset, nearest_rotation(rotation)))
+    Ok(Pose::from_parts(place.into(), nearest_rotation(rotation)))
 }
 
 /// The pose of the first three rows of a rigid transform's matrix, its rotation made exactly one.
 ///
 /// # Errors
-/// What was found, if a number is not finite, or the matrix is mirrored, skewed or scaled by more
-/// than 1e-4.
+/// What was found, if a number is not finite, the matrix is mirrored, skewed or scaled by more
+/// than 1e-4, or the place more than 1e9 m off.
 pub(crate) fn pose_from_rows(numbers: &[f64; 12]) -> Result<Pose, String> {
     let mut whole = [0.0; 16];
     whole[..12].copy_from_slice(numbers);
@@ -97,6 +112,14 @@ mod tests {
         assert_eq!(with(15, 2.0).unwrap_err(), "a last row of [0.0, 0.0, 0.0, 2.0]");
         assert_eq!(pose_from_matrix(&LEFT[..12]).unwrap_err(), "12 numbers");
         assert!(with(1, -1.00001).is_ok());
+    }
+
+    #[test]
+    fn fault_19_a_place_beyond_a_thousand_million_metres_is_refused() {
+        assert!(with(3, 1e9).is_ok() && with(11, -1e9).is_ok());
+        assert!(with(3, 1.1e9).unwrap_err().ends_with("beyond 1e9 m"));
+        assert!(with(11, -1e300).unwrap_err().ends_with("beyond 1e9 m"));
+        assert!(!is_place(&[0.0, f64::NAN, 0.0]) && !is_place(&[f64::INFINITY]));
     }
 
     #[test]

@@ -89,7 +89,9 @@ fn label_scenes(
     let outcome = findings.outcome();
     let manifest = records::manifest(job, plan, &record, &entries);
     begun.end(&manifest, report.json(outcome, &findings, job.threads))?;
-    job.console.result(&report.total_line());
+    if plan.scenes.len() != 1 {
+        job.console.result(&report.total_line());
+    }
     Ok(outcome)
 }
 

@@ -33,7 +33,7 @@ impl Report {
 
     pub(crate) fn total_line(&self) -> String {
         let scenes = self.scenes.len();
-        self.total.line(&format!("{scenes} {}", if scenes == 1 { "scene" } else { "scenes" }))
+        self.total.line(&format!("{scenes} scenes"))
     }
 
     pub(crate) fn json(&self, outcome: Outcome, findings: &Findings, threads: usize) -> Value {

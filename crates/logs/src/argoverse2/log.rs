@@ -6,17 +6,14 @@ use std::path::{Path, PathBuf};
 use nalgebra::Point3;
 use occlabel_core::{Fault, PointCloud, PointLabel, Scene, SweepHeader};
 
-use super::format_defaults;
 use super::lidars::{Lidars, are_lasers, is_first};
 use super::poses::Mountings;
 use super::scene::{MOUNTINGS, TABLES, build_scene, is_log};
 use super::table::Table;
+use super::{DEPTH, POSES, format_defaults};
 use crate::files::unreadable;
 use crate::names::{nearest_names, quoted};
 use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints, UnknownLabels};
-
-/// Logs lie so deep at most: `sensor/val/<log>`.
-const DEPTH: usize = 3;
 
 /// A log of Argoverse 2.
 #[derive(Debug)]
@@ -148,7 +145,7 @@ fn check_wanted(
 ) -> Result<(), Fault> {
     let place = root.display().to_string();
     if folders.is_empty() {
-        let expected = "folders with city_SE3_egovehicle.feather";
+        let expected = format!("folders with {POSES}");
         return Err(Fault::new("av2-layout", place, expected, "none"));
     }
     let known: Vec<&str> = folders.iter().map(|(name, _)| name.as_str()).collect();

@@ -28,6 +28,10 @@ pub use log::Argoverse2Log;
 #[cfg(not(feature = "av2"))]
 pub use without::Argoverse2Log;
 
+/// The ego poses of a log, without which it is none.
+pub(crate) const POSES: &str = "city_SE3_egovehicle.feather";
+/// Logs lie so deep at most: `sensor/val/<log>`.
+pub(crate) const DEPTH: usize = 3;
 /// The name of the two lidars, whose points stand in one cloud.
 const LIDAR: &str = "lidar";
 

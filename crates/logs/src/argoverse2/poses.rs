@@ -7,6 +7,7 @@ use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use occlabel_core::{Fault, Pose};
 
 use super::table::Table;
+use crate::transform::is_place;
 
 /// How far a quaternion's norm may be off 1.
 const LARGEST_ERROR: f64 = 1e-2;
@@ -55,6 +56,9 @@ fn pose([w, x, y, z, tx, ty, tz]: [f64; 7]) -> Result<Pose, String> {
     let norm = rotation.norm();
     if ![tx, ty, tz, norm].iter().all(|number| number.is_finite()) {
         return Err("a number that is not finite".into());
+    }
+    if !is_place(&[tx, ty, tz]) {
+        return Err(format!("a place {:?} m, beyond 1e9 m", [tx, ty, tz]));
     }
     if (norm - 1.0).abs() > LARGEST_ERROR {
         return Err(format!("a quaternion of norm {norm}"));

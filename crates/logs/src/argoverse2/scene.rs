@@ -5,20 +5,18 @@ use std::path::Path;
 
 use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader, Timestamp};
 
-use super::LIDAR;
 use super::cameras::{LENSES, read_cameras};
 use super::lidars::Lidars;
 use super::poses::{Mountings, poses};
 use super::table::Table;
 use super::times::file_times;
 use super::tracks::read_tracks;
+use super::{LIDAR, POSES};
 use crate::ReadOptions;
 use crate::files::is_folder_name;
 use crate::keyframes::keyframes;
 use crate::notes::Notes;
 
-/// The ego poses of a log.
-const POSES: &str = "city_SE3_egovehicle.feather";
 /// The boxes of a log; absent from logs of the test split.
 const BOXES: &str = "annotations.feather";
 /// The sensors' mountings.

@@ -11,6 +11,8 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use occlabel_core::{Box3, Fault, Pose};
 use roxmltree::{Document, Node};
 
+use crate::transform::is_place;
+
 /// Columns of a transform that are farther from square than this make no box.
 const LARGEST_SKEW: f64 = 1e-2;
 
@@ -90,6 +92,9 @@ fn boxed(node: &Node) -> Result<Box3, String> {
     let centre = scaled * (lowest + highest) / 2.0 + Vector3::new(m[3], m[7], m[11]);
     if !size_m.iter().all(|side| side.is_finite() && *side > 0.0) {
         return Err(format!("{} x {} x {} m", size_m.x, size_m.y, size_m.z));
+    }
+    if !is_place(&centre) {
+        return Err(format!("a centre {:?} m, beyond 1e9 m", centre.as_slice()));
     }
     let near = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
     let rotation = UnitQuaternion::new_normalize(near.into_inner());

@@ -6,6 +6,7 @@ use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use occlabel_core::{Fault, Pose, Timestamp, slerp};
 
 use super::messages::RawPose;
+use crate::transform::is_place;
 
 /// A quaternion's norm may be off by this much: rounding of 32-bit numbers and printed digits.
 const SILENT_NORM_ERROR: f64 = 1e-6;
@@ -147,7 +148,7 @@ impl Frames {
 /// What was found, if it is none.
 pub(super) fn checked_pose(raw: &RawPose) -> Result<(Pose, Option<f64>), String> {
     let RawPose { translation, rotation: [x, y, z, w] } = *raw;
-    if !translation.iter().all(|metres| metres.is_finite()) {
+    if !is_place(&translation) {
         return Err(format!("a translation {translation:?}"));
     }
     let rotation = Quaternion::new(w, x, y, z);

@@ -183,6 +183,11 @@ fn defaults(lidars: &[String]) -> ReaderDefaults {
     }
 }
 
+/// Whether a folder holds any file.
+pub(crate) fn has_files(root: &Path) -> bool {
+    mcap_files(root).is_ok()
+}
+
 /// The folder's files, in byte order of their names.
 fn mcap_files(root: &Path) -> Result<Vec<String>, Fault> {
     let place = root.display().to_string();

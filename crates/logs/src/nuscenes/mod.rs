@@ -48,6 +48,13 @@ use label_files::LabelFile;
 use tables::Tables;
 use token::Token;
 
+/// Whether a folder holds tables of any version.
+pub(crate) fn has_tables(root: &Path) -> bool {
+    let tables = |name: String| version::table_files(root, &root.join(name)).unwrap_or_default();
+    let names = version::version_names(root).unwrap_or_default();
+    names.into_iter().any(|name| !tables(name).is_empty())
+}
+
 /// Body and roof rack of the nuScenes car, ego frame (rear axle on the ground), metres
 /// (labels.md section 13).
 const EGO_BOX_M: ([f64; 3], [f64; 3]) = ([-1.2, -1.1, -0.3], [3.7, 1.1, 2.2]);

@@ -7,6 +7,7 @@ use super::number::{Number, plain};
 use super::rows::{CalibratedSensor, EgoPose, SampleAnnotation};
 use super::table::{Row, Table};
 use crate::notes::Notes;
+use crate::transform::{A_PLACE, is_place};
 
 /// A quaternion's norm may be off by this much: rounding of 32-bit numbers and printed digits.
 const SILENT_NORM_ERROR: f64 = 1e-6;
@@ -51,13 +52,13 @@ impl<T: Placed> Row<T> {
     /// The row's pose, its rotation renormalised. A norm off by more than 1e-6 is noted.
     ///
     /// # Errors
-    /// If the norm is off by more than 1e-2, or a number is not finite.
+    /// If the norm is off by more than 1e-2, a number is not finite, or the place beyond 1e9 m.
     pub(super) fn pose(&self, order: QuaternionOrder, notes: &mut Notes) -> Result<Pose, Fault> {
         let (translation, rotation) = self.placement();
         let translation = plain(translation);
-        if !translation.iter().all(|metres| metres.is_finite()) {
+        if !is_place(&translation) {
             let found = format!("{translation:?}");
-            return Err(self.fault("translation", "finite numbers", found));
+            return Err(self.fault("translation", A_PLACE, found));
         }
         let rotation = quaternion(plain(rotation), order);
         let off = (rotation.norm() - 1.0).abs();

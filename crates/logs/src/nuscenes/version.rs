@@ -56,7 +56,7 @@ pub(super) fn table_files(root: &Path, folder: &Path) -> Result<Vec<String>, Fau
 }
 
 /// Names of the version folders, sorted.
-fn version_names(root: &Path) -> Result<Vec<String>, Fault> {
+pub(super) fn version_names(root: &Path) -> Result<Vec<String>, Fault> {
     let place = root.to_string_lossy();
     let entries = fs::read_dir(root).map_err(|error| unreadable(&place, &error))?;
     let mut names: Vec<String> = entries

@@ -28,6 +28,11 @@ use sequences::{Sequence, label_file, sequences};
 /// The name of the only lidar.
 const LIDAR: &str = "velodyne";
 
+/// Whether a folder is a sequence, or holds any.
+pub(crate) fn has_scans(root: &Path) -> bool {
+    sequences(root).is_ok()
+}
+
 /// A log in the layout of SemanticKITTI.
 #[derive(Debug)]
 pub struct SemanticKittiLog {

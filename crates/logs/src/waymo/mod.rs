@@ -49,6 +49,11 @@ use tfrecords::TfRecords;
 /// Occ3D-Waymo drops, which knows no bounds of height (labels.md section 13).
 const BODY_AROUND_TOP_M: ([f64; 3], [f64; 3]) = ([-8.0, -2.0, -1000.0], [4.0, 2.0, 1000.0]);
 
+/// Whether a folder holds frames of either version.
+pub(crate) fn has_frames(root: &Path) -> bool {
+    Layout::of_folder(root).is_ok()
+}
+
 /// A log of the Waymo Open Dataset.
 #[derive(Debug)]
 pub struct WaymoLog {

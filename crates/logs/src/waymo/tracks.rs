@@ -8,6 +8,7 @@ use super::segment::{BoxLabel, Frame};
 use crate::ReadOptions;
 use crate::notes::Notes;
 use crate::tracks::{A_SIZE, TrackBox, TrackBoxes, checked_size};
+use crate::transform::is_place;
 
 /// The tracks of a segment, 1..N in byte order of their ids. A box that is none is refused; a track
 /// that has no other is left out.
@@ -43,9 +44,13 @@ fn read_box(frame: &Frame, label: &BoxLabel) -> Result<Box3, Fault> {
     }
     let size_m = checked_size(*size_m)
         .map_err(|found| label.place.fault("box-size", A_SIZE, format!("{found} of `{track}`")))?;
-    if !center_m.iter().chain([heading_rad]).all(|number| number.is_finite()) {
+    if !is_place(center_m) || !heading_rad.is_finite() {
         let found = format!("{:?}, {heading_rad} of `{track}`", center_m.as_slice());
-        return Err(label.place.fault("box-pose", "a finite centre and heading", found));
+        return Err(label.place.fault(
+            "box-pose",
+            "a finite heading, and a centre of at most 1e9 m",
+            found,
+        ));
     }
     let world_from_box = frame.world_from_ego * upright(center_m, *heading_rad);
     Ok(Box3 { world_from_box, size_m })

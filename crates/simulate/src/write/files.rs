@@ -20,6 +20,8 @@ const PART: &str = ".part";
 pub struct Output {
     root: PathBuf,
     part: PathBuf,
+    /// Whether the folder was made for the log.
+    is_new: bool,
 }
 
 /// A file that grows.
@@ -36,6 +38,7 @@ impl Output {
     /// # Errors
     /// If the folder holds anything else (rule `output`), or cannot be made.
     pub fn create(root: &Path) -> Result<Self, Fault> {
+        let is_new = !root.exists();
         fs::create_dir_all(root).map_err(|error| refused(root, &error))?;
         if let Some(found) = names_in(root)?.iter().find(|name| *name != PART) {
             let (place, found) = (root.display().to_string(), format!("`{found}` in it"));
@@ -48,7 +51,7 @@ impl Output {
             }
             _ => fs::create_dir(&part).map_err(|error| refused(&part, &error))?,
         }
-        Ok(Self { root: root.to_owned(), part })
+        Ok(Self { root: root.to_owned(), part, is_new })
     }
 
     /// Writes a file; `name` is relative to the log's root.
@@ -94,6 +97,10 @@ impl Drop for Output {
     fn drop(&mut self) {
         // What stays is taken away by the next writer.
         let _ = fs::remove_dir_all(&self.part);
+        if self.is_new {
+            // Only an empty folder goes.
+            let _ = fs::remove_dir(&self.root);
+        }
     }
 }
 
