@@ -4,6 +4,9 @@ use std::collections::BTreeSet;
 
 use occlabel_core::{Fault, Loss, Refusal};
 
+/// So many records that were left out explain why nothing is left.
+const FIRST_REFUSED: usize = 2;
+
 /// Warnings and refusals, as they come up.
 #[derive(Debug, Default)]
 pub(crate) struct Notes {
@@ -25,6 +28,28 @@ impl Notes {
     /// The value, or a note that it is left out.
     pub(crate) fn accept<T>(&mut self, loss: Loss, result: Result<T, Fault>) -> Option<T> {
         result.map_err(|fault| self.refuse(loss, fault)).ok()
+    }
+
+    /// The fault of a scene that has no sweep to go by, with why: how many records were left out,
+    /// the first of them, and the warnings that come with a hint.
+    pub(crate) fn explain(&self, fault: Fault) -> Fault {
+        let costs_sweeps = |refusal: &&Refusal| {
+            matches!(refusal.loss, Loss::Sweep | Loss::Keyframe | Loss::Remainder)
+        };
+        let refused: Vec<&Fault> =
+            self.refused.iter().filter(costs_sweeps).map(|refusal| &refusal.fault).collect();
+        if refused.is_empty() {
+            return fault;
+        }
+        let hinted = folded(self.warnings.clone()).into_iter().filter(|odd| odd.hint.is_some());
+        let hinted: Vec<Fault> = hinted.collect();
+        let first = refused.iter().copied().take(FIRST_REFUSED).chain(&hinted);
+        let told: Vec<String> = first.map(|fault| unhinted(fault).to_string()).collect();
+        let (found, records) = (&fault.found, refused.len());
+        let found = format!("{found}: {records} records refused, the first: {}", told.join("; "));
+        let hints = refused.into_iter().chain(&hinted).filter_map(|fault| fault.hint.clone());
+        // The log is at fault, and not the name of the lidar.
+        Fault { rule: "no-sweeps", found, hint: hints.chain(fault.hint).next(), ..fault }
     }
 
     /// Warnings, those of one rule and place folded into the first, and refusals.
@@ -49,6 +74,10 @@ fn folded(warnings: Vec<Fault>) -> Vec<Fault> {
         }
     }
     kinds.into_iter().map(|(first, records)| counted(first, records.len())).collect()
+}
+
+fn unhinted(fault: &Fault) -> Fault {
+    Fault { hint: None, ..fault.clone() }
 }
 
 fn counted(first: Fault, records: usize) -> Fault {
