@@ -20,6 +20,13 @@ impl Notes {
         self.warnings.push(fault);
     }
 
+    /// The warnings of a rule with this hint.
+    pub(crate) fn hint(&mut self, rule: &str, hint: &str) {
+        for odd in self.warnings.iter_mut().filter(|odd| odd.rule == rule) {
+            odd.hint = Some(hint.to_owned());
+        }
+    }
+
     /// Notes a record that is left out.
     pub(crate) fn refuse(&mut self, loss: Loss, fault: Fault) {
         self.refused.push(Refusal { loss, fault });
@@ -109,5 +116,26 @@ mod tests {
             "t (x): expected a, found b, the first of 3 such records"
         );
         assert_eq!(warnings[1], warning("one", "x"));
+    }
+
+    #[test]
+    fn a_scene_without_sweeps_is_explained_by_what_was_refused() {
+        let mut notes = Notes::default();
+        let fault = Fault::new("reference-lidar", "s", "sweeps", "no sweeps").hint("another");
+        assert_eq!(notes.explain(fault.clone()), fault);
+        notes.refuse(Loss::Annotation, Fault::new("box", "b", "a box", "none"));
+        assert_eq!(notes.explain(fault.clone()), fault);
+        for line in 1..=3 {
+            let refused = Fault::new("pose", "poses.txt", "12 numbers", "1 lines");
+            notes.refuse(Loss::Keyframe, refused.record(format!("line {line}")));
+        }
+        notes.warn(Fault::new("clock", "s", "one clock", "two").hint("choose"));
+        assert_eq!(
+            notes.explain(fault).to_string(),
+            "s: expected sweeps, found no sweeps: 3 records refused, the first: \
+             poses.txt (line 1): expected 12 numbers, found 1 lines; \
+             poses.txt (line 2): expected 12 numbers, found 1 lines; \
+             s: expected one clock, found two; hint: choose"
+        );
     }
 }

@@ -26,6 +26,8 @@ mod protobuf;
 mod record;
 mod record_file;
 mod recording;
+#[cfg(test)]
+mod refusal_tests;
 mod resolve;
 mod ros;
 #[cfg(test)]
