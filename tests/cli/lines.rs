@@ -1,6 +1,7 @@
 //! Help, usage, presets, and what a log holds.
 
 use std::fs;
+use std::path::Path;
 
 use crate::support::{Label, SCENE, TestLog, files_under, occlabel, text, tree_hash};
 

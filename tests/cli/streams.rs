@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use crate::support::{Label, SCENE, TestLog};
+use crate::support::{Label, SCENE, TestLog, nano_spec};
 
 #[test]
 fn results_go_to_stdout_and_all_else_to_stderr() {
@@ -18,7 +18,7 @@ fn a_total_is_told_of_several_scenes_only() {
     let log = TestLog::nano();
     let one = Label::new(&log.root(), &log.beside("out")).small().run().exits(0).stdout;
     assert!(one.lines().count() == 1 && one.starts_with(SCENE), "{one}");
-    let log = TestLog::simulated(&occlabel_testkit::LogSpec { scenes: 2, ..nano_spec() });
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
     let two = Label::new(&log.root(), &log.beside("out")).small().run().exits(0).stdout;
     assert!(two.lines().count() == 3 && two.contains("\n2 scenes: "), "{two}");
 }

@@ -48,7 +48,7 @@ pub(crate) fn open_with(
     check_input(&log.input).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
     let stop = |fault| usage_or_failed(with_format(fault, log));
-    let autos = autos(log, &mut config.reader).map_err(stop)?;
+    let autos = autos(log, scenes.as_ref(), &mut config.reader).map_err(stop)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
@@ -91,7 +91,11 @@ fn open_format(
 
 /// What the format itself says where the configuration says `"auto"`; tables of other formats go,
 /// as they decide nothing.
-fn autos(log: &LogArgs, tables: &mut ReaderTables) -> Result<Autos, Fault> {
+fn autos(
+    log: &LogArgs,
+    scenes: Option<&BTreeSet<String>>,
+    tables: &mut ReaderTables,
+) -> Result<Autos, Fault> {
     let given = std::mem::take(tables);
     let defaults = match log.format {
         Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref())?,
@@ -99,7 +103,7 @@ fn autos(log: &LogArgs, tables: &mut ReaderTables) -> Result<Autos, Fault> {
         Format::Av2 => Argoverse2Log::format_defaults(),
         Format::Semantickitti => SemanticKittiLog::format_defaults(),
         Format::Mcap => {
-            let (defaults, mut mcap) = McapLog::resolve(&log.input, &given.mcap)?;
+            let (defaults, mut mcap) = McapLog::resolve(&log.input, scenes, &given.mcap)?;
             let taxonomy = std::mem::replace(&mut mcap.taxonomy, file_name(&given.mcap.taxonomy));
             tables.mcap = mcap;
             return Ok(Autos { taxonomy, ..autos_of(defaults) });

@@ -1,9 +1,10 @@
 //! Images: never needed, so only their headers are read.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, ErrorKind};
 use std::path::Path;
 
+use imagesize::ImageError;
 use occlabel_core::Fault;
 
 use crate::files::{name_defect, open_file};
@@ -56,7 +57,13 @@ impl ImageFile {
 
 /// Width and height by the header; what was found instead, if it tells none.
 fn header_size(file: File) -> Result<[u64; 2], String> {
-    let size = imagesize::reader_size(BufReader::new(file)).map_err(|error| error.to_string())?;
+    let bytes = file.metadata().map_or(0, |metadata| metadata.len());
+    let size = imagesize::reader_size(BufReader::new(file)).map_err(|error| match error {
+        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            format!("the end of the file at byte {bytes}")
+        }
+        error => error.to_string(),
+    })?;
     Ok([size.width as u64, size.height as u64])
 }
 
@@ -123,6 +130,7 @@ mod tests {
         let headers = ["image-header", "image-header"];
         assert_eq!(rules, ["image-size", headers[0], headers[1], "file-name", "image-absent"]);
         assert_eq!(faults[0].found, "1600 x 900 pixels");
+        assert_eq!(faults[1].found, "the end of the file at byte 22");
         assert_eq!(faults[4].found, "2 of 7 absent");
     }
 }

@@ -4,6 +4,8 @@ use occlabel_core::{
     Exposure, Fault, Keyframe, KeyframeSettings, KeyframeSource, SweepHeader, nearest_exposure,
 };
 
+use crate::notes::Notes;
+
 /// The keyframes of a scene, their tokens the sweeps' times in nanoseconds. Of sweeps of one time
 /// the first is taken.
 ///
@@ -11,15 +13,17 @@ use occlabel_core::{
 /// `exposures` holds, for each camera, its exposures in order of time.
 ///
 /// # Errors
-/// If the scene has no sweep of the wanted lidar.
+/// If the scene has no sweep of the wanted lidar; `notes` may tell why.
 pub(crate) fn keyframes(
     settings: &KeyframeSettings,
     scene: &str,
     sweeps: &[SweepHeader],
     is_annotated: impl Fn(&SweepHeader) -> bool,
     exposures: &[Vec<Exposure>],
+    notes: &Notes,
 ) -> Result<Vec<Keyframe>, Fault> {
-    let reference = reference_lidar(settings, scene, sweeps)?;
+    let reference =
+        reference_lidar(settings, scene, sweeps).map_err(|fault| notes.explain(fault))?;
     let all = settings.source == KeyframeSource::Sweeps || !sweeps.iter().any(&is_annotated);
     let is_chosen = |sweep: &SweepHeader| sweep.lidar == reference && (all || is_annotated(sweep));
     let mut chosen: Vec<_> =
@@ -48,7 +52,12 @@ fn reference_lidar(
     names.dedup();
     settings.choose_lidar(&names).ok_or_else(|| {
         let expected = format!("sweeps of the reference lidar `{}`", settings.reference_lidar);
-        let found = if names.is_empty() { "no sweeps".into() } else { names.join(", ") };
-        Fault::new("reference-lidar", scene, expected, found)
+        if names.is_empty() {
+            return Fault::new("no-sweeps", scene, expected, "no sweeps");
+        }
+        let fault = Fault::new("reference-lidar", scene, expected, names.join(", "));
+        fault.hint(
+            "`--set keyframes.reference_lidar=NAME` takes another, `--scenes` leaves scenes out",
+        )
     })
 }

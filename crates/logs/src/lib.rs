@@ -56,7 +56,7 @@ pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
 pub use mcap::{McapLog, McapOptions, TimeSource};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
-pub use options::{ReadOptions, without_stand_in};
+pub use options::{ReadOptions, unknown_hint, without_stand_in};
 pub use points::PointColumns;
 pub use raw_labels::UnknownLabels;
 pub use semantickitti::SemanticKittiLog;

@@ -51,13 +51,17 @@ impl ReadOptions {
     /// The fault of something that the taxonomy does not name: a warning if a class stands in for
     /// it.
     pub(crate) fn unknown(&self, fault: Fault) -> Result<Fault, Fault> {
-        let Some(class) = self.unknown_as else {
-            return Err(fault.hint("`--unknown-as CLASS` gives it a class"));
-        };
+        let Some(class) = self.unknown_as else { return Err(unknown_hint(fault)) };
         let name = self.taxonomy.names.get(class.index());
         let taken_as = name.map_or_else(|| class.0.to_string(), |name| format!("`{name}`"));
         Ok(Fault { found: format!("{}{TAKEN_AS}{taken_as}", fault.found), ..fault })
     }
+}
+
+/// A fault of unknown names with what can be done; a format's own hint stays.
+pub fn unknown_hint(fault: Fault) -> Fault {
+    let hint = "`--unknown-as CLASS` gives it a class".to_owned();
+    Fault { hint: fault.hint.clone().or(Some(hint)), ..fault }
 }
 
 /// A warning of unknown names without what is said about the class that stands in for them.

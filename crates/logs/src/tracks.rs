@@ -8,6 +8,9 @@ use occlabel_core::{Box3, BoxTrack, Fault, Loss, Timestamp, TrackId};
 use crate::ReadOptions;
 use crate::notes::Notes;
 
+/// The rule of a category that the taxonomy does not name.
+pub(crate) const UNKNOWN_CATEGORY: &str = "unknown-category";
+
 /// The boxes of a scene by the source's ids of their tracks.
 #[derive(Debug, Default)]
 pub(crate) struct TrackBoxes {
@@ -99,7 +102,7 @@ impl TrackBoxes {
         }
         let list = |(name, count): (&&str, &usize)| format!("`{name}` of {count} boxes");
         let found = unknown.iter().map(list).collect::<Vec<_>>().join(", ");
-        let fault = Fault::new("unknown-category", file, "categories of the taxonomy", found);
+        let fault = Fault::new(UNKNOWN_CATEGORY, file, "categories of the taxonomy", found);
         notes.warn(options.unknown(fault)?);
         Ok(())
     }

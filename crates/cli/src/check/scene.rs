@@ -5,7 +5,7 @@ use std::path::Path;
 use occlabel_core::{Fault, Scene, SweepHeader};
 use occlabel_logs::{
     Finding, Inventory, MissingFile, SceneSurvey, Severity, SweepSurvey, UnknownLabels, UnknownSum,
-    check_images, check_poses, without_stand_in,
+    check_images, check_poses, unknown_hint, without_stand_in,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -112,10 +112,7 @@ impl SceneCheck<'_> {
     /// Something that the reader took: an error if it took it only for the check's sake.
     fn taken(&self, fault: Fault) -> Finding {
         match self.is_refused(&fault) {
-            true => {
-                let fault = fault.hint("`--unknown-as CLASS` gives it a class");
-                self.finding(Severity::Error, fault)
-            }
+            true => self.finding(Severity::Error, unknown_hint(fault)),
             false => self.finding(Severity::of_warning(fault.rule), fault),
         }
     }

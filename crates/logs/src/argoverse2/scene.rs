@@ -62,7 +62,7 @@ pub(super) fn build_scene(
     }
     let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
     let (cameras, exposures) = read_cameras((root, folder), &mountings, &ego_poses, &mut notes)?;
-    let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &exposures)?;
+    let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &exposures, &notes)?;
     let (warnings, refused) = notes.finish();
     let name = name.to_owned();
     Ok(Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused })

@@ -55,7 +55,8 @@ impl Loaded {
         let (cameras, exposures) = read_cameras(root, &drive, &calibration, &poses, &mut notes);
         let mut sweeps: Vec<SweepHeader> = by_frame.into_values().collect();
         sweeps.sort_by(|a, b| (a.time, &a.file).cmp(&(b.time, &b.file)));
-        let keyframes = keyframes(&options.keyframes, name, &sweeps, |_| false, &exposures)?;
+        let keyframes =
+            keyframes(&options.keyframes, name, &sweeps, |_| false, &exposures, &notes)?;
         let (warnings, refused) = notes.finish();
         let name = name.to_owned();
         let scene = Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused };

@@ -118,28 +118,31 @@ impl Container {
         Ok(())
     }
 
-    /// The first message of each wanted topic, and what is wrong with the block that ended the
-    /// search.
+    /// Offers the messages of each wanted topic, in the file's order, until one is taken.
+    ///
+    /// # Errors
+    /// What is wrong with the block that ended the search.
     pub(super) fn first_of_each(
         &mut self,
         contents: &Contents,
         wanted: impl Fn(&Channel) -> bool,
-    ) -> (Vec<Message>, Option<Fault>) {
+        mut takes: impl FnMut(&Message) -> bool,
+    ) -> Result<(), Fault> {
         let mut left: BTreeSet<&str> =
             contents.channels.values().filter(|c| wanted(c)).map(|c| c.topic.as_str()).collect();
-        let mut first = Vec::new();
         for block in &contents.blocks {
             let is_new = |c: &Channel| wanted(c) && left.contains(c.topic.as_str());
             if left.is_empty() || !block.may_hold(contents, is_new) {
                 continue;
             }
-            match self.messages(contents, block.start, &wanted) {
-                Ok(messages) => first
-                    .extend(messages.into_iter().filter(|m| left.remove(m.channel.topic.as_str()))),
-                Err(fault) => return (first, Some(fault)),
+            for message in self.messages(contents, block.start, &wanted)? {
+                let topic = message.channel.topic.as_str();
+                if left.contains(topic) && takes(&message) {
+                    left.remove(topic);
+                }
             }
         }
-        (first, None)
+        Ok(())
     }
 
     /// The message at a place.

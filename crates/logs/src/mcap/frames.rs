@@ -83,6 +83,17 @@ impl Frames {
         chain
     }
 
+    /// What a chain of ancestors stands in, and whether it ends.
+    pub(super) fn told(&self, chain: &[&str]) -> String {
+        let last = chain[chain.len() - 1];
+        let end = match self.parent(last) {
+            Some((parent, _)) => format!("`{last}` in `{parent}` again, a ring"),
+            None => format!("`{last}` in none"),
+        };
+        let steps = chain.windows(2).map(|pair| format!("`{}` in `{}`, ", pair[0], pair[1]));
+        steps.collect::<String>() + &end
+    }
+
     fn parent(&self, child: &str) -> Option<(&str, &[(Timestamp, Pose)])> {
         let (parent, poses) = self.links.get(child)?.first_key_value()?;
         Some((parent, poses))
@@ -100,7 +111,8 @@ impl Frames {
     pub(super) fn pose(&self, to: &str, from: &str, time: Timestamp) -> Result<Pose, String> {
         let (up_to, up_from) = (self.ancestors(to), self.ancestors(from));
         let Some(common) = up_from.iter().find(|frame| up_to.contains(frame)) else {
-            return Err(format!("no way from `{from}` to `{to}`"));
+            let (from_chain, to_chain) = (self.told(&up_from), self.told(&up_to));
+            return Err(format!("no way from `{from}` to `{to}`: {from_chain}, but {to_chain}"));
         };
         let down = self.climb(&up_to, common, time)?;
         let up = self.climb(&up_from, common, time)?;
@@ -205,7 +217,10 @@ mod tests {
         assert!(frames.pose("map", "lidar", Timestamp(-1)).unwrap_err().contains("no pose yet"));
         let late = frames.pose("base", "map", Timestamp(1_000_000_001)).unwrap_err();
         assert!(late.contains("no more pose of `base`"), "{late}");
-        assert!(frames.pose("map", "roof", Timestamp(0)).unwrap_err().contains("no way"));
+        assert_eq!(
+            frames.pose("map", "roof", Timestamp(0)).unwrap_err(),
+            "no way from `roof` to `map`: `roof` in none, but `map` in none"
+        );
         frames.max_gap_s = 0.9;
         assert!(frames.pose("map", "base", Timestamp(5)).unwrap_err().contains("gap of 1.000 s"));
         assert!(frames.pose("map", "base", Timestamp(0)).is_ok());
@@ -219,6 +234,10 @@ mod tests {
         frames.add("c", "c", Timestamp(0), Pose::identity());
         assert_eq!(frames.ancestors("a"), ["a", "b"]);
         assert_eq!(frames.ancestors("c"), ["c"]);
+        assert_eq!(
+            frames.pose("c", "a", Timestamp(0)).unwrap_err(),
+            "no way from `a` to `c`: `a` in `b`, `b` in `a` again, a ring, but `c` in `c` again, a ring"
+        );
         assert!(frames.pose("a", "b", Timestamp(0)).is_ok());
     }
 }

@@ -125,8 +125,10 @@ fn axes<const N: usize>(value: &Value, names: [&str; N]) -> [f64; N] {
     names.map(|name| number(&value[name]))
 }
 
+/// A number; what JSON has none for is written as a text, such as `"Infinity"`.
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or(f64::NAN)
+    let written = || value.as_str().and_then(|text| text.parse().ok());
+    value.as_f64().or_else(written).unwrap_or(f64::NAN)
 }
 
 fn integer(value: &Value, key: &str) -> i64 {
@@ -174,6 +176,15 @@ fn six_bits(digit: u8) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_that_json_has_not_are_read_as_texts() {
+        let axes = |x: Value| axes(&serde_json::json!({ "x": x }), ["x"])[0];
+        assert_eq!(axes("Infinity".into()), f64::INFINITY);
+        assert_eq!(axes("-Infinity".into()), f64::NEG_INFINITY);
+        assert!(axes("NaN".into()).is_nan() && axes(Value::Null).is_nan());
+        assert_eq!(axes(1.5.into()), 1.5);
+    }
 
     #[test]
     fn base_64_is_as_rfc_4648_shows() {

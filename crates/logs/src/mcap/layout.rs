@@ -51,7 +51,8 @@ fn ego_of<'a>(recording: &Recording, chain: &[&'a str]) -> Result<&'a str, Fault
     let moving = || chain.iter().find(|frame| recording.frames.moves(frame));
     usual.or_else(moving).copied().ok_or_else(|| {
         let expected = "a moving frame among those of the first cloud";
-        let fault = Fault::new("mcap-ego-frame", &recording.file, expected, chain.join(" in "));
+        let fault =
+            Fault::new("mcap-ego-frame", &recording.file, expected, recording.frames.told(chain));
         fault.hint("`reader.mcap.ego_frame` names it")
     })
 }

@@ -26,6 +26,8 @@ mod protobuf;
 mod record;
 mod record_file;
 mod recording;
+#[cfg(test)]
+mod refusal_tests;
 mod resolve;
 mod ros;
 #[cfg(test)]
@@ -40,6 +42,7 @@ mod sweep_points;
 mod sweeps;
 mod tracks;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -81,31 +84,30 @@ impl McapLog {
     /// # Errors
     /// If it holds none, a wanted scene is not there, or no file tells its lidars.
     pub fn open(root: &Path, options: McapOptions) -> Result<Self, Fault> {
-        let files = mcap_files(root)?;
-        check_wanted(&options, &files)?;
-        let (defaults, settings) = Self::resolve(root, &options.settings)?;
-        let options = McapOptions { settings, ..options };
+        let wanted = options.read.scenes.as_ref();
+        let (defaults, settings) = Self::resolve(root, wanted, &options.settings)?;
         let scene = |file: String| {
             let name = file.strip_suffix(ENDING).unwrap_or(&file).to_owned();
             SceneFile { name, file, loaded: OnceLock::new() }
         };
-        let scenes = files.into_iter().map(scene);
-        let scenes = scenes.filter(|scene| options.read.wants(&scene.name)).collect();
+        let scenes = wanted_files(root, wanted)?.into_iter().map(scene).collect();
+        let options = McapOptions { settings, ..options };
         Ok(Self { root: root.to_owned(), options, scenes, defaults })
     }
 
     /// What the log itself says where the configuration says `"auto"`, and the settings with that in
-    /// them: known before the log is opened, at the price of one pass over one file. It holds for all
-    /// files. An `"auto"` is left only if no file tells.
+    /// them: known before the log is opened, at the price of one pass over one file of the wanted
+    /// scenes (`None`: all). It holds for all of them. An `"auto"` is left only if no file tells.
     ///
     /// # Errors
-    /// If there is no file, or none can be read.
+    /// If there is no file, a wanted scene is not there, or none can be read.
     pub fn resolve(
         root: &Path,
+        wanted: Option<&BTreeSet<String>>,
         settings: &McapSettings,
     ) -> Result<(ReaderDefaults, McapSettings), Fault> {
         let (mut first, mut fault) = (None, None);
-        for file in mcap_files(root)? {
+        for file in wanted_files(root, wanted)? {
             match resolve(root, &file, settings) {
                 Ok(Told { lidars, roles: Some(roles) }) => {
                     let FrameRoles { world: world_frame, ego: ego_frame } = roles;
@@ -207,12 +209,20 @@ fn no_files(root: &Path) -> Fault {
     fault.hint("name the folder that holds the files")
 }
 
+/// The files of the wanted scenes.
+fn wanted_files(root: &Path, wanted: Option<&BTreeSet<String>>) -> Result<Vec<String>, Fault> {
+    let mut files = mcap_files(root)?;
+    let Some(wanted) = wanted else { return Ok(files) };
+    check_wanted(wanted, &files)?;
+    files.retain(|file| file.strip_suffix(ENDING).is_some_and(|name| wanted.contains(name)));
+    Ok(files)
+}
+
 /// Whether every scene that is asked for by name is there.
-fn check_wanted(options: &McapOptions, files: &[String]) -> Result<(), Fault> {
-    let names = files.iter().filter_map(|file| file.strip_suffix(ENDING));
-    let names: Vec<&str> = names.collect();
+fn check_wanted(wanted: &BTreeSet<String>, files: &[String]) -> Result<(), Fault> {
+    let names: Vec<&str> = files.iter().filter_map(|file| file.strip_suffix(ENDING)).collect();
     let absent = |wanted: &&String| !names.contains(&wanted.as_str());
-    let Some(name) = options.read.scenes.iter().flatten().find(absent) else { return Ok(()) };
+    let Some(name) = wanted.iter().find(absent) else { return Ok(()) };
     let fault = Fault::new("scene-unknown", "files", format!("a file `{name}{ENDING}`"), "none");
     let near = quoted(&nearest_names(name, &names));
     Err(if near.is_empty() { fault } else { fault.hint(format!("there is {near}")) })

@@ -35,7 +35,10 @@ impl<'a> Points<'a> {
             (Some(row), Some(all)) => row <= cloud.row_step && all == data,
             _ => false,
         };
-        if step == 0 || !is_whole || (cloud.rows == 1 && row_bytes != Some(data)) {
+        if step == 0 {
+            return Err(Defect::new("a stride of 1 byte or more a point", "0"));
+        }
+        if !is_whole || (cloud.rows == 1 && row_bytes != Some(data)) {
             let Cloud { rows, width, row_step, .. } = cloud;
             let expected =
                 format!("{rows} x {width} points of {step} bytes in rows of {row_step} bytes");

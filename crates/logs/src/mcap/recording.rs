@@ -219,7 +219,7 @@ impl Recording {
     }
 
     /// A fault of a message.
-    fn fault(&self, rule: &'static str, message: &Message, defect: Defect) -> Fault {
+    pub(super) fn fault(&self, rule: &'static str, message: &Message, defect: Defect) -> Fault {
         let MessageAt { block, place } = message.at;
         let record = format!("{}, record {place} of its chunk", message.channel.topic);
         Fault::new(rule, &self.file, defect.expected, defect.found).record(record).offset(block)

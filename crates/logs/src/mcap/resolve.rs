@@ -4,7 +4,7 @@ use std::path::Path;
 
 use occlabel_core::{Fault, McapSettings};
 
-use super::container::Container;
+use super::container::{Container, Message};
 use super::dispatch::{Decoded, decode};
 use super::layout::{AUTO, FrameRoles, lidar_names};
 use super::options::{Purpose, purpose};
@@ -19,23 +19,29 @@ pub(super) struct Told {
     pub(super) roles: Option<FrameRoles>,
 }
 
-/// Reads a file's transforms, and the first cloud of each topic.
+/// Reads a file's transforms, and the first cloud of each topic that can be read.
 ///
 /// # Errors
-/// If it cannot be read, or tells of no clouds.
+/// If the file cannot be read, or none of its clouds.
 pub(super) fn resolve(root: &Path, file: &str, settings: &McapSettings) -> Result<Told, Fault> {
     let mut container = Container::open(root, file, settings.max_record_bytes)?;
     let (contents, cut) = container.contents();
     let reads = |wanted| move |channel: &_| purpose(settings, channel) == Some(wanted);
-    let (clouds, broken) = container.first_of_each(&contents, reads(Purpose::Sweeps));
-    let mut recording = Recording::new(file, settings);
-    for message in clouds {
-        if let Ok(Some(Decoded::Cloud(cloud))) = decode(&message, false) {
-            recording.clouds.push(CloudHead::new(&message, cloud));
+    let (mut recording, mut refused) = (Recording::new(file, settings), None);
+    let takes = |message: &Message| match decode(message, false) {
+        Ok(Some(Decoded::Cloud(cloud))) => {
+            recording.clouds.push(CloudHead::new(message, cloud));
+            true
         }
-    }
+        Ok(_) => true,
+        Err(defect) => {
+            refused.get_or_insert_with(|| recording.fault("mcap-message", message, defect));
+            false
+        }
+    };
+    let broken = container.first_of_each(&contents, reads(Purpose::Sweeps), takes).err();
     if recording.clouds.is_empty() {
-        return Err(broken.or(cut).unwrap_or_else(|| no_clouds(file)));
+        return Err(refused.or(broken).or(cut).unwrap_or_else(|| no_clouds(file)));
     }
     if settings.world_frame == AUTO || settings.ego_frame == AUTO {
         // What is broken or refused here is told of when the scene is read.

@@ -45,13 +45,17 @@ impl Loaded {
         let McapOptions { read, settings, .. } = options;
         let mut notes = Notes::default();
         let recording = Recording::read(root, file, options, &mut notes)?;
-        let roles = FrameRoles::find(&recording, settings)?;
+        let roles = FrameRoles::find(&recording, settings).map_err(|fault| match fault.rule {
+            "mcap-clouds" => notes.explain(fault),
+            _ => fault,
+        })?;
         let lidars = lidar_names(&recording.clouds, settings);
         let sweeps = sweep_headers(&recording, settings, &roles, &lidars, &mut notes);
         let (cameras, exposures) = cameras(&recording, settings, &roles, &mut notes);
         let annotated = annotated_times(&recording);
         let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
-        let keyframes = keyframes(&read.keyframes, name, &sweeps, is_annotated, &exposures)?;
+        let keyframes =
+            keyframes(&read.keyframes, name, &sweeps, is_annotated, &exposures, &notes)?;
         let tracks = tracks(&recording, (read, settings), &roles, &mut notes)?;
         let (warnings, refused) = notes.finish();
         let name = name.to_owned();

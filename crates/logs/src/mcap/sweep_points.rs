@@ -15,6 +15,9 @@ use super::sweeps::label_field;
 use crate::SweepPoints;
 use crate::raw_labels::RawLabels;
 
+/// What can be done about labels that the taxonomy does not name.
+const LABELS_HINT: &str = "`reader.mcap.taxonomy` names another taxonomy, \
+    `[reader.mcap.classes]` what numbers are called, `--unknown-as CLASS` a class for all";
 /// Times of points from here on are counted from the epoch, seconds; below, from the sweep's time.
 const EPOCH_TIMES_FROM_S: f64 = 1e6;
 
@@ -52,8 +55,9 @@ pub(super) fn sweep_points(
         }
     };
     let mut warnings = Vec::new();
-    let unknown = raw_labels.finish(file, &mut warnings).map_err(located)?;
-    Ok(SweepPoints { cloud, warnings, unknown }.located(located))
+    let hinted = |fault: Fault| located(fault).hint(LABELS_HINT);
+    let unknown = raw_labels.finish(file, &mut warnings).map_err(hinted)?;
+    Ok(SweepPoints { cloud, warnings, unknown }.located(hinted))
 }
 
 fn point_times(

@@ -10,7 +10,11 @@ use super::messages::Cube;
 use super::recording::Recording;
 use crate::ReadOptions;
 use crate::notes::Notes;
-use crate::tracks::{TrackBox, TrackBoxes, checked_size};
+use crate::tracks::{TrackBox, TrackBoxes, UNKNOWN_CATEGORY, checked_size};
+
+/// What can be done about categories that the taxonomy does not name.
+const CATEGORIES_HINT: &str = "`reader.mcap.taxonomy` names another taxonomy, \
+    `[reader.mcap.categories]` what they mean, `--unknown-as CLASS` a class for all";
 
 /// The tracks, 1..N in byte order of their ids. A box that is none is refused; a track that has no
 /// other is left out. One that is said again, all the same, counts once.
@@ -34,12 +38,12 @@ pub(super) fn tracks(
             tracks.add(TrackBox { track, category, time, boxed }, notes, located)?;
         }
     }
-    let hint =
-        "`reader.mcap.taxonomy` names another taxonomy, `[reader.mcap.categories]` what they mean";
-    tracks.tracks(read, &recording.file, notes).map_err(|fault| match fault.rule {
-        "unknown-category" => fault.hint(hint),
+    let tracks = tracks.tracks(read, &recording.file, notes).map_err(|fault| match fault.rule {
+        UNKNOWN_CATEGORY => fault.hint(CATEGORIES_HINT),
         _ => fault,
-    })
+    })?;
+    notes.hint(UNKNOWN_CATEGORY, CATEGORIES_HINT);
+    Ok(tracks)
 }
 
 fn accept_box(

@@ -38,7 +38,7 @@ pub(super) fn build_scene(
         scans.into_iter().filter_map(|scan| notes.accept(Loss::Keyframe, header(scan))).collect();
     report_order(&sweeps, &sequence.times(), &mut notes);
     sweeps.sort_by(|a, b| (a.time, &a.file).cmp(&(b.time, &b.file)));
-    let keyframes = keyframes(&options.keyframes, name, &sweeps, |_| false, &[])?;
+    let keyframes = keyframes(&options.keyframes, name, &sweeps, |_| false, &[], &notes)?;
     let (warnings, refused) = notes.finish();
     Ok(Scene { name: name.clone(), sweeps, keyframes, warnings, refused, ..Scene::default() })
 }

@@ -36,7 +36,7 @@ pub(super) fn build_scene(
     let annotated: BTreeSet<Timestamp> =
         frames.iter().filter(|frame| !frame.boxes.is_empty()).map(|frame| frame.time).collect();
     let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
-    let mut keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &[])?;
+    let mut keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &[], &notes)?;
     expose(&mut keyframes, &frames, &cameras, &mut notes);
     let tracks = scene_tracks(options, &frames, &mut notes)?;
     let cameras = cameras.into_iter().map(|camera| camera.named).collect();

@@ -240,7 +240,7 @@ fn a_lidar_without_images_or_calibration_is_no_sweep() {
     let blind = first_changed(&[(5, 1)], |bytes| without(bytes, 2));
     assert_eq!(load(&blind).unwrap().sweeps.len(), 14);
     let all: Vec<Vec<u8>> = frames().iter().map(|frame| without(frame, 5)).collect();
-    assert_eq!(load(&all).unwrap_err().rule, "reference-lidar");
+    assert_eq!(load(&all).unwrap_err().rule, "no-sweeps");
     let strange: Vec<Vec<u8>> = frames()
         .iter()
         .map(|frame| edit(frame, &[(1, 0), (3, 1)], &mut |bytes| without(bytes, 1)))
