@@ -48,7 +48,7 @@ impl SceneCheck<'_> {
         };
         let inventory = Inventory::take(&*self.opened.source, self.root, &scene);
         let mut findings = self.structure(&scene, &inventory);
-        let (survey, odd) = self.sweeps(&scene.sweeps);
+        let (survey, odd) = self.sweeps(&scene);
         findings.extend(odd);
         let ego_box = self.opened.rules.split.ego_box_m.as_ref();
         let (geometry, thickness_m) = survey.conclude(self.name, &scene.sweeps, ego_box);
@@ -80,11 +80,11 @@ impl SceneCheck<'_> {
     }
 
     /// What the sweeps show, and what is wrong with each.
-    fn sweeps(&self, sweeps: &[SweepHeader]) -> (SceneSurvey, Vec<Finding>) {
+    fn sweeps(&self, scene: &Scene) -> (SceneSurvey, Vec<Finding>) {
         let (mut survey, mut unknown) = (SceneSurvey::default(), UnknownSum::default());
         let (mut taken, mut refused) = (Vec::new(), Vec::new());
-        for some in sweeps.chunks(SWEEPS_AT_ONCE) {
-            let looks: Vec<Look> = some.par_iter().map(|sweep| self.look(sweep)).collect();
+        for some in scene.sweeps.chunks(SWEEPS_AT_ONCE) {
+            let looks: Vec<Look> = some.par_iter().map(|sweep| self.look(scene, sweep)).collect();
             for (sweep, look) in some.iter().zip(looks) {
                 match look {
                     Ok((one, labels, warnings)) => {
@@ -102,10 +102,10 @@ impl SceneCheck<'_> {
         (survey, refused.chain(taken).collect())
     }
 
-    fn look(&self, sweep: &SweepHeader) -> Look {
+    fn look(&self, scene: &Scene, sweep: &SweepHeader) -> Look {
         let points = self.opened.source.read_sweep(sweep)?;
         let ego_box = self.opened.rules.split.ego_box_m.as_ref();
-        let survey = SweepSurvey::of(sweep, &points.cloud, ego_box);
+        let survey = SweepSurvey::of(sweep, &points.cloud, &scene.tracks, ego_box);
         Ok((survey, points.unknown, points.warnings))
     }
 
