@@ -29,6 +29,8 @@ pub(crate) struct Opened {
     /// BLAKE3 of the taxonomy's file.
     pub(crate) taxonomy_hash: String,
     pub(crate) rules: Rules,
+    /// Whether the configuration names the lidar that keyframes refer to.
+    pub(crate) names_lidar: bool,
 }
 
 /// Opens the log and resolves the configuration against it.
@@ -46,6 +48,7 @@ pub(crate) fn open_with(
     check_flags(log).map_err(Stop::usage)?;
     check_input(log).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
+    let names_lidar = config.keyframes.reference_lidar != "auto";
     let autos = autos(log, &mut config.reader).map_err(usage_or_failed)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
@@ -58,7 +61,7 @@ pub(crate) fn open_with(
     };
     let mcap = config.reader.mcap.clone();
     let source = open_format(log, options, mcap).map_err(usage_or_failed)?;
-    Ok(Opened { source, preset, config, taxonomy_hash, rules })
+    Ok(Opened { source, preset, config, taxonomy_hash, rules, names_lidar })
 }
 
 /// Opens a log by its format.
@@ -135,7 +138,6 @@ fn usage_or_failed(fault: Fault) -> Stop {
     match fault.rule {
         "scene-unknown"
         | "version-folder"
-        | "reference-lidar"
         | "waymo-layout"
         | "waymo-v2"
         | "av2"
