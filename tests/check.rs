@@ -92,6 +92,33 @@ fn lines_tell_the_same_and_usage_is_2() {
     assert!(told.ends_with("errors: 1, warnings: 0, remarks: 1\n"), "{told}");
     occlabel(&["check", "--format", "nuscenes", "--input", "/no/log"]).exits(2);
     occlabel(&[&line[..], &["--set", "a.b=1"]].concat()).exits(2);
+    let found = checked("nuscenes", Path::new("/no/log"), &[]).finds(2, "error", &["input"]);
+    assert_eq!(found.json["errors"], 1);
+}
+
+#[test]
+fn fault_36_all_files_outside_of_the_root_are_told_at_once() {
+    let log = TestLog::nano();
+    log.edit("sample_data", |rows| {
+        let sweeps = rows.iter_mut().filter(|row| row["fileformat"] == "pcd").take(2);
+        sweeps.for_each(|row| row["filename"] = "../a.bin".into());
+        let image = rows.iter_mut().find(|row| row["fileformat"] != "pcd").expect("an image");
+        image["filename"] = "../a.jpg".into();
+    });
+    check(&log).finds(1, "error", &["file-name", "file-name"]);
+}
+
+#[test]
+fn fault_13_poses_in_other_axes_are_told_by_both() {
+    let log = TestLog::nano();
+    log.edit("ego_pose", |rows| {
+        for (place, row) in rows.iter_mut().enumerate() {
+            row["translation"] = json!([0.0, place as f64 * 2.0, 0.0]);
+            row["rotation"] = json!([1.0, 0.0, 0.0, 0.0]);
+        }
+    });
+    check(&log).one("heading");
+    assert_eq!(warned(&label(&log), "heading").len(), 1);
 }
 
 #[test]

@@ -22,6 +22,20 @@ fn lacks(format: &str, log: &Path, more: &[&str]) -> Vec<String> {
     assert!(report["total"]["voxels"]["occupied"].as_u64() > Some(10), "{report}");
     let rules = report["warnings"].as_array().expect("warnings").iter();
     let rules = rules.filter_map(|warning| warning["rule"].as_str().map(str::to_owned));
+    let lacks: Vec<String> = rules.filter(|rule| LACKS.contains(&rule.as_str())).collect();
+    assert_eq!(checked(format, log, more), lacks, "`check` tells the same");
+    lacks
+}
+
+/// The remarks of `check` on what a log lacks.
+fn checked(format: &str, log: &Path, more: &[&str]) -> Vec<String> {
+    let line = ["check", "--json", "--format", format, "--input", text(log)];
+    let rules = ["--set", "relabel.unknown_class=taxonomy"];
+    let told = occlabel(&[&line[..], &rules, more].concat()).stdout;
+    let told: Value = serde_json::from_str(&told).expect("one object");
+    let findings = told["findings"].as_array().expect("findings").iter();
+    let remarks = findings.filter(|finding| finding["severity"] == "remark");
+    let rules = remarks.filter_map(|remark| remark["rule"].as_str().map(str::to_owned));
     rules.filter(|rule| LACKS.contains(&rule.as_str())).collect()
 }
 

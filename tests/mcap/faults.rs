@@ -8,7 +8,9 @@ use mcap::Compression;
 use serde_json::{Value, json};
 
 use crate::drive::{Drive, rewrite};
-use crate::support::{Ended, Label, TestLog, files_under, gts_files, manifest, report};
+use crate::support::{
+    Ended, Label, TestLog, files_under, gts_files, manifest, occlabel, report, text,
+};
 
 /// What is too large is refused at once; this leaves room for a slow machine.
 const SOON: Duration = Duration::from_secs(5);
@@ -55,6 +57,9 @@ fn assert_recovered(drive: &Drive, log: &Path, rule: &str, left: std::ops::Range
     assert_nothing_written(&drive.path("strict"));
     drive.label("mcap", log, "recovered", &["--recover"]).exits(3);
     let output = drive.path("recovered");
+    let line = ["check", "--format", "mcap", "--input", text(log), "--recover"];
+    let told = occlabel(&line).exits(3).stdout;
+    assert!(told.contains(&format!("warning [{rule}]")) && !told.contains("`--recover`"), "{told}");
     assert_eq!(listed(&output, "skipped_or_degraded", rule), 1, "{}", report(&output));
     let found = gts_files(&output).len() / 2;
     assert!(left.contains(&found), "{found} keyframes");

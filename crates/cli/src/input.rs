@@ -30,6 +30,8 @@ pub(crate) struct Opened {
     /// BLAKE3 of the taxonomy's file.
     pub(crate) taxonomy_hash: String,
     pub(crate) rules: Rules,
+    /// Whether the configuration names the lidar that keyframes refer to.
+    pub(crate) names_lidar: bool,
 }
 
 /// Opens the log and resolves the configuration against it.
@@ -47,6 +49,7 @@ pub(crate) fn open_with(
     check_flags(log, args).map_err(Stop::usage)?;
     check_input(&log.input).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
+    let names_lidar = config.keyframes.reference_lidar != "auto";
     let stop = |fault| usage_or_failed(with_format(fault, log));
     let autos = autos(log, scenes.as_ref(), &mut config.reader).map_err(stop)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
@@ -60,7 +63,7 @@ pub(crate) fn open_with(
     };
     let mcap = config.reader.mcap.clone();
     let source = open_format(log, options, mcap).map_err(stop)?;
-    Ok(Opened { source, preset, config, taxonomy_hash, rules })
+    Ok(Opened { source, preset, config, taxonomy_hash, rules, names_lidar })
 }
 
 /// Opens a log by its format.
@@ -141,7 +144,6 @@ fn usage_or_failed(fault: Fault) -> Stop {
     match fault.rule {
         "scene-unknown"
         | "version-folder"
-        | "reference-lidar"
         | "waymo-layout"
         | "waymo-v2"
         | "av2"

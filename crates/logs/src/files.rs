@@ -27,14 +27,36 @@ pub(crate) fn open_file(path: &Path, place: &str) -> Result<File, Fault> {
 /// If it is absent (`missing-file`), longer, or cannot be read.
 pub(crate) fn read_file(root: &Path, name: &str) -> Result<Vec<u8>, Fault> {
     let file = open_file(&root.join(name), name)?;
+    let metadata = file.metadata().map_err(|error| unreadable(name, &error))?;
+    check_size(name, metadata.len())?;
     let mut bytes = Vec::new();
+    // It may grow meanwhile.
     let read = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
     read.map_err(|error| unreadable(name, &error))?;
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        let expected = format!("at most {MAX_FILE_BYTES} bytes");
-        return Err(Fault::new("file-size", name, expected, "more"));
-    }
+    check_size(name, bytes.len() as u64)?;
     Ok(bytes)
+}
+
+fn check_size(name: &str, bytes: u64) -> Result<(), Fault> {
+    if bytes <= MAX_FILE_BYTES {
+        return Ok(());
+    }
+    let (expected, found) = (format!("at most {MAX_FILE_BYTES} bytes"), format!("{bytes} bytes"));
+    Err(Fault::new("file-size", name, expected, found))
+}
+
+/// Whether all these files are there.
+///
+/// # Errors
+/// One that names all that are not (`missing-file`).
+pub(crate) fn check_present(root: &Path, names: &[String]) -> Result<(), Fault> {
+    let absent = names.iter().filter(|name| !root.join(name).exists());
+    let absent: Vec<&str> = absent.map(String::as_str).collect();
+    match absent.len() {
+        0 => Ok(()),
+        1 => Err(Fault::new("missing-file", absent[0], "a file", "none")),
+        _ => Err(Fault::new("missing-file", absent.join(", "), "these files", "none of them")),
+    }
 }
 
 /// A file's size in bytes; 0 if it cannot be looked at.
@@ -99,6 +121,16 @@ mod tests {
         ] {
             assert!(name_defect(name).is_some(), "{name:?}");
         }
+    }
+
+    /// A file without blocks: reading it up to the bound would take a GiB.
+    #[test]
+    fn fault_34_files_that_are_too_long_are_refused_by_their_size() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = File::create(folder.path().join("a.bin")).unwrap();
+        file.set_len(1 << 40).unwrap();
+        let fault = read_file(folder.path(), "a.bin").unwrap_err();
+        assert_eq!((fault.rule, fault.found.as_str()), ("file-size", "1099511627776 bytes"));
     }
 
     #[test]

@@ -21,7 +21,14 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<Outcome, Stop> 
     match open_with(&args.log, &args.config, Some(ClassId(0))) {
         Ok(opened) => check_scenes(args, &opened, console, &mut report),
         Err(Stop::Failed(faults)) => faults.into_iter().for_each(|fault| report.add_error(fault)),
-        Err(usage) => return Err(usage),
+        Err(usage) => {
+            // Whoever reads JSON gets its one object, whatever the exit code.
+            if args.json {
+                usage.faults().iter().for_each(|fault| report.add_error(fault.clone()));
+                report.print(args.json, console);
+            }
+            return Err(usage);
+        }
     }
     if report.has_errors() && args.log.format == Format::Nuscenes {
         let references =

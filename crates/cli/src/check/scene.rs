@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use occlabel_core::{Fault, Scene, SweepHeader};
+use occlabel_core::{Fault, Loss, Refusal, Scene, SweepHeader};
 use occlabel_logs::{
     Finding, Inventory, MissingFile, SceneSurvey, Severity, SweepSurvey, UnknownLabels, UnknownSum,
     check_images, check_poses, unknown_hint, without_stand_in,
@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::input::Opened;
+use crate::lacks::lacks;
 
 /// So many sweeps are looked at before what they told is put together: what bounds the memory.
 const SWEEPS_AT_ONCE: usize = 64;
@@ -48,7 +49,7 @@ impl SceneCheck<'_> {
         };
         let inventory = Inventory::take(&*self.opened.source, self.root, &scene);
         let mut findings = self.structure(&scene, &inventory);
-        let (survey, odd) = self.sweeps(&scene.sweeps);
+        let (survey, odd) = self.sweeps(&scene);
         findings.extend(odd);
         let ego_box = self.opened.rules.split.ego_box_m.as_ref();
         let (geometry, thickness_m) = survey.conclude(self.name, &scene.sweeps, ego_box);
@@ -67,24 +68,26 @@ impl SceneCheck<'_> {
 
     /// What the tables and the folders show.
     fn structure(&self, scene: &Scene, inventory: &Inventory) -> Vec<Finding> {
-        let refused = scene.refused.iter().map(|refusal| refusal.fault.clone());
+        let refused = scene.refused.iter().map(|refusal| self.refused(refusal));
         let missing = inventory.missing.iter().map(MissingFile::fault);
         let missing = inventory.summary().into_iter().chain(missing);
         let unlabelled = self.opened.rules.check_labels(scene).err();
-        let errors = refused.chain(missing).chain(unlabelled);
+        // Without a class for them that is an error already.
+        let is_new = |lack: &Fault| unlabelled.as_ref().is_none_or(|told| told.rule != lack.rule);
+        let lacks = lacks(scene, &self.opened.config).into_iter().filter(is_new);
+        let lacks: Vec<Fault> = lacks.collect();
+        let errors = missing.chain(unlabelled).map(|fault| self.finding(Severity::Error, fault));
         let images = check_images(self.root, &self.opened.source.image_files(self.name));
         let odd = scene.warnings.iter().map(|fault| self.told(fault)).chain(images);
-        let none = (!scene.has_point_labels()).then(|| no_labels(scene));
-        let errors = errors.map(|fault| self.finding(Severity::Error, fault));
-        errors.chain(odd.chain(none).map(|fault| self.taken(fault))).collect()
+        refused.chain(errors).chain(odd.chain(lacks).map(|fault| self.taken(fault))).collect()
     }
 
     /// What the sweeps show, and what is wrong with each.
-    fn sweeps(&self, sweeps: &[SweepHeader]) -> (SceneSurvey, Vec<Finding>) {
+    fn sweeps(&self, scene: &Scene) -> (SceneSurvey, Vec<Finding>) {
         let (mut survey, mut unknown) = (SceneSurvey::default(), UnknownSum::default());
         let (mut taken, mut refused) = (Vec::new(), Vec::new());
-        for some in sweeps.chunks(SWEEPS_AT_ONCE) {
-            let looks: Vec<Look> = some.par_iter().map(|sweep| self.look(sweep)).collect();
+        for some in scene.sweeps.chunks(SWEEPS_AT_ONCE) {
+            let looks: Vec<Look> = some.par_iter().map(|sweep| self.look(scene, sweep)).collect();
             for (sweep, look) in some.iter().zip(looks) {
                 match look {
                     Ok((one, labels, warnings)) => {
@@ -102,10 +105,10 @@ impl SceneCheck<'_> {
         (survey, refused.chain(taken).collect())
     }
 
-    fn look(&self, sweep: &SweepHeader) -> Look {
+    fn look(&self, scene: &Scene, sweep: &SweepHeader) -> Look {
         let points = self.opened.source.read_sweep(sweep)?;
         let ego_box = self.opened.rules.split.ego_box_m.as_ref();
-        let survey = SweepSurvey::of(sweep, &points.cloud, ego_box);
+        let survey = SweepSurvey::of(sweep, &points.cloud, &scene.tracks, ego_box);
         Ok((survey, points.unknown, points.warnings))
     }
 
@@ -115,6 +118,15 @@ impl SceneCheck<'_> {
             true => self.finding(Severity::Error, unknown_hint(fault)),
             false => self.finding(Severity::of_warning(fault.rule), fault),
         }
+    }
+
+    /// What the reader refused: an error, unless it was asked to read up to there.
+    fn refused(&self, refusal: &Refusal) -> Finding {
+        let severity = match refusal.loss {
+            Loss::Remainder => Severity::Warning,
+            _ => Severity::Error,
+        };
+        self.finding(severity, refusal.fault.clone())
     }
 
     /// A scene's warning as `label` would tell it.
@@ -133,10 +145,6 @@ impl SceneCheck<'_> {
     fn finding(&self, severity: Severity, fault: Fault) -> Finding {
         Finding { scene: Some(self.name.to_owned()), severity, fault }
     }
-}
-
-fn no_labels(scene: &Scene) -> Fault {
-    Fault::new("unlabelled", &scene.name, "labels on some sweeps", "none")
 }
 
 impl SceneFigures {

@@ -52,7 +52,7 @@ impl PlannedScene {
         tokens: &mut BTreeSet<&str>,
         findings: &mut Findings,
     ) -> Result<Option<Self>, Refused> {
-        let scene = job.opened.source.load(name).map_err(refused_load)?;
+        let scene = job.opened.source.load(name).map_err(|fault| refused_load(job, fault))?;
         let wanted = chosen_keyframes(job, &scene, tokens);
         if wanted.is_empty() && !job.args.keyframes.is_empty() {
             return Ok(None);
@@ -100,9 +100,9 @@ impl PlannedScene {
     }
 }
 
-fn refused_load(fault: Fault) -> Refused {
+fn refused_load(job: &Job, fault: Fault) -> Refused {
     match fault.rule {
-        "reference-lidar" => Refused::Configuration(fault),
+        "reference-lidar" if job.opened.names_lidar => Refused::Configuration(fault),
         _ => Refused::Broken(vec![fault]),
     }
 }

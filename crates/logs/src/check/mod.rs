@@ -4,8 +4,10 @@
 //! sweeps, one by one ([`SweepSurvey`], [`SceneSurvey`]). Reading is the caller's. docs/check.md names
 //! every rule.
 
+mod box_points;
 mod gaps;
 mod ground;
+mod heading;
 mod jumps;
 mod level;
 mod neighbours;
@@ -29,6 +31,7 @@ pub use unknown::UnknownSum;
 pub fn check_poses(scene: &Scene, ground_thickness_m: Option<f64>) -> Vec<Fault> {
     let mut faults = rotation::rotation_steps(&scene.sweeps);
     faults.extend(rotation::tilted(&scene.sweeps));
+    faults.extend(heading::heading(&scene.sweeps));
     faults.extend(jumps::pose_jumps(&scene.sweeps));
     faults.extend(gaps::sweep_gaps(&scene.sweeps));
     faults.extend(level::level_world(&scene.sweeps, ground_thickness_m));

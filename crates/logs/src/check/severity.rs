@@ -27,13 +27,17 @@ pub struct Finding {
 
 /// Rules of warnings by which nothing is lost: what is absent without being missed, and what a log
 /// holds twice.
-const REMARKS: [&str; 6] = [
+const REMARKS: [&str; 10] = [
+    "boxes-absent",
+    "boxes-at-one-time",
     "camera-absent",
+    "component-absent",
     "image-absent",
     "key-sweep-repeated",
+    "no-boxes",
+    "no-cameras",
     "no-labels",
     "sweep-copied",
-    "unlabelled",
 ];
 
 impl Severity {

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Point3;
-use occlabel_core::{Fault, PointCloud, PointLabel, SweepHeader};
+use occlabel_core::{BoxTrack, Fault, PointCloud, PointLabel, SweepHeader};
 
+use super::box_points::{BoxPoints, near_boxes};
 use super::ground::{GroundView, ground_normals};
 use super::own_body::{OwnBody, near_returns};
 use super::thickness::{Thickness, ground_heights};
@@ -16,6 +17,7 @@ pub struct SweepSurvey {
     ground: Option<GroundView>,
     heights_m: BTreeMap<(i64, i64), f32>,
     near: BTreeMap<[i64; 3], usize>,
+    boxes: BTreeMap<(u16, usize), bool>,
 }
 
 /// What the sweeps of a scene say together.
@@ -24,14 +26,16 @@ pub struct SceneSurvey {
     grounds: Vec<GroundView>,
     thickness: Thickness,
     own_body: OwnBody,
+    boxes: BoxPoints,
 }
 
 impl SweepSurvey {
-    /// Looks at a sweep's points, lidar frame. `ego_box` is what is taken for the vehicle's body,
+    /// Looks at a sweep's points, lidar frame. `tracks` are the scene's; `ego_box` is what is taken for the vehicle's body,
     /// lower and upper corner, ego frame, metres.
     pub fn of(
         sweep: &SweepHeader,
         cloud: &PointCloud<PointLabel>,
+        tracks: &[BoxTrack],
         ego_box: Option<&(Point3<f64>, Point3<f64>)>,
     ) -> Self {
         let is_return = |i: &usize| {
@@ -45,7 +49,7 @@ impl SweepSurvey {
         let heights_m = level.map(|level| ground_heights(sweep, &points, &level));
         let near = level.map(|level| near_returns(&points, &level, ego_box));
         let (heights_m, near) = (heights_m.unwrap_or_default(), near.unwrap_or_default());
-        Self { ground, heights_m, near }
+        Self { ground, heights_m, near, boxes: near_boxes(sweep, cloud, tracks) }
     }
 }
 
@@ -55,6 +59,7 @@ impl SceneSurvey {
         self.grounds.extend(survey.ground);
         self.thickness.add(survey.heights_m);
         self.own_body.add(sweep, survey.near);
+        self.boxes.add(survey.boxes);
     }
 
     /// What the sweeps show of a scene's geometry, and how far they differ about the ground's height,
@@ -73,7 +78,8 @@ impl SceneSurvey {
             return (vec![finding(Severity::Error, fault)], None);
         }
         let still = self.own_body.faults(ego_box).into_iter();
-        let findings = still.map(|fault| finding(Severity::Warning, fault));
+        let findings =
+            still.chain(self.boxes.fault()).map(|fault| finding(Severity::Warning, fault));
         (findings.collect(), self.thickness.median_m())
     }
 }

@@ -209,10 +209,13 @@ impl Container {
     }
 }
 
+/// What could be done about a broken file.
+pub(super) const RECOVER_HINT: &str = "`--recover` reads what stands before it";
+
 /// The fault of a file that is broken, but not all through.
 fn recoverable(fault: Fault) -> Fault {
     match fault.hint {
-        None => fault.hint("`--recover` reads what stands before it"),
+        None => fault.hint(RECOVER_HINT),
         Some(_) => fault,
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use blake3::Hash;
 use occlabel_core::{Fault, Loss, McapSettings, Timestamp};
 
-use super::container::{Container, Message, MessageAt};
+use super::container::{Container, Message, MessageAt, RECOVER_HINT};
 use super::contents::Contents;
 use super::dispatch::{Decoded, decode};
 use super::frames::{Frames, checked_pose};
@@ -127,6 +127,9 @@ impl Recording {
     ) -> Result<(), Fault> {
         match result {
             Err(fault) if options.recover => {
+                // What could be done about it is done.
+                let fault =
+                    Fault { hint: fault.hint.filter(|hint| *hint != RECOVER_HINT), ..fault };
                 if !self.broken.contains(&fault) {
                     self.broken.push(fault.clone());
                     notes.refuse(Loss::Remainder, fault);

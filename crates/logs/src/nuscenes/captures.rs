@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashSet};
 use occlabel_core::{Fault, Timestamp};
 
 use super::rows::{CalibratedSensor, SampleData};
-use super::table::{Row, repeated};
+use super::table::{Row, Table, repeated};
 use super::tables::{SceneRows, Tables};
 use crate::files::name_defect;
 
@@ -68,6 +68,7 @@ impl<'a> Captures<'a> {
         let capture = Capture { row, calibration, channel, time };
         match sensor.modality.as_str() {
             "lidar" => {
+                check_time(row)?;
                 check_file(row)?;
                 self.lidars.push(capture);
             }
@@ -79,11 +80,24 @@ impl<'a> Captures<'a> {
 }
 
 fn check_file(row: &Row<SampleData>) -> Result<(), Fault> {
-    match name_defect(&row.filename) {
-        Some(defect) => {
-            let found = format!("`{}`, {defect}", row.filename);
-            Err(row.fault("file-name", "a path below the log's root", found))
-        }
-        None => Ok(()),
+    file_fault(&row.filename).map_or(Ok(()), |fault| Err(row.located(fault)))
+}
+
+/// What is wrong with the name of a sweep's file, if anything.
+pub(super) fn file_fault(name: &str) -> Option<Fault> {
+    let defect = name_defect(name)?;
+    let found = format!("`{name}`, {defect}");
+    Some(Fault::new("file-name", SampleData::FILE, "a path below the log's root", found))
+}
+
+/// Later times do not fit into nanoseconds: the year 2262.
+const LATEST_MICROS: u64 = i64::MAX as u64 / 1000;
+
+fn check_time(row: &Row<SampleData>) -> Result<(), Fault> {
+    if row.timestamp.unsigned_abs() <= LATEST_MICROS {
+        return Ok(());
     }
+    let fault =
+        row.fault("timestamp", "microseconds before the year 2262", row.timestamp.to_string());
+    Err(fault.hint("it looks like nanoseconds"))
 }

@@ -1,4 +1,5 @@
-//! Every token that is there twice or names nothing, all tables through.
+//! Every token that is there twice or names nothing, and every sweep's file that lies outside of the
+//! log's root, all tables through.
 //!
 //! Opening a log stops at the first of these; this is for telling them all.
 
@@ -9,6 +10,7 @@ use std::path::Path;
 use occlabel_core::Fault;
 use serde::Deserialize;
 
+use super::captures::file_fault;
 use super::records::Records;
 use super::rows::{
     CalibratedSensor, Category, EgoPose, Instance, Sample, SampleAnnotation, SampleData, SceneRow,
@@ -21,7 +23,7 @@ use crate::files::open_file;
 /// Of one kind in one table so many are told one by one; the others are counted.
 const MAX_TOLD: usize = 100;
 
-/// A row's token, and those by which it names rows of other tables.
+/// A row's token, those by which it names rows of other tables, and what tells a lidar's files.
 #[derive(Deserialize)]
 struct References {
     token: Token,
@@ -32,6 +34,8 @@ struct References {
     ego_pose_token: Option<Token>,
     category_token: Option<Token>,
     instance_token: Option<Token>,
+    modality: Option<String>,
+    filename: Option<String>,
 }
 
 impl References {
@@ -70,6 +74,8 @@ pub(super) fn reference_faults(folder: &Path) -> Vec<Fault> {
 #[derive(Default)]
 struct Tokens {
     by_file: HashMap<&'static str, HashSet<Token>>,
+    /// Lidars, and their calibrations.
+    lidars: HashSet<Token>,
     faults: Vec<Fault>,
 }
 
@@ -85,7 +91,7 @@ impl Tokens {
 
     /// The tokens of a table; what is wrong with them goes to `found`.
     fn read<T: Table>(
-        &self,
+        &mut self,
         folder: &Path,
         found: &mut Vec<Fault>,
     ) -> Result<HashSet<Token>, Fault> {
@@ -97,11 +103,24 @@ impl Tokens {
             let row: References = parse::<T, _>(&record, None)?;
             let located = |fault: Fault| fault.record(row.token.to_string()).offset(record.offset);
             found.extend(self.dangling::<T>(&row).map(located));
+            found.extend(self.misplaced(&row).map(located));
             if !tokens.insert(row.token.clone()) {
                 found.push(located(repeated::<T>()));
             }
         }
         Ok(tokens)
+    }
+
+    /// A sweep whose file lies outside of the log's root. Remembers the rows of lidars, whose tables
+    /// come before.
+    fn misplaced(&mut self, row: &References) -> Option<Fault> {
+        let is_of_lidar =
+            |token: &Option<Token>| token.as_ref().is_some_and(|token| self.lidars.contains(token));
+        let is_sweep = is_of_lidar(&row.calibrated_sensor_token);
+        if row.modality.as_deref() == Some("lidar") || is_of_lidar(&row.sensor_token) {
+            self.lidars.insert(row.token.clone());
+        }
+        file_fault(row.filename.as_deref().filter(|_| is_sweep)?)
     }
 
     /// The tokens of a row that name nothing.

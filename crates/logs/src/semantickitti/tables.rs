@@ -6,6 +6,7 @@ use occlabel_core::{Fault, Pose, Timestamp};
 
 use super::mounting::ego_from_camera;
 use super::sequences::Sequence;
+use crate::files::check_present;
 use crate::number_rows::{numbers, read_lines};
 use crate::transform::pose_from_rows;
 
@@ -30,6 +31,7 @@ impl Tables {
     /// If one cannot be read, or calib.txt holds no usable `Tr`.
     pub(super) fn read(root: &Path, sequence: &Sequence) -> Result<Self, Fault> {
         let files = sequence.tables();
+        check_present(root, &files)?;
         let [calib, poses, times] = &files;
         let lines = read_lines(root, calib)?;
         let row = lines.iter().find_map(|line| line.trim_start().strip_prefix("Tr:"));

@@ -10,7 +10,7 @@ use super::range_image::{LABEL, PIXEL, POSE, RangeImages, Return};
 use super::segment::LidarCalibration;
 use super::sweep_id::SweepId;
 
-const POSES: &str = "lidar_pose";
+pub(super) const POSES: &str = "lidar_pose";
 const LABELS: &str = "lidar_segmentation";
 
 impl Components {

@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use occlabel_core::{Fault, SweepHeader, Timestamp};
 
 use super::calibration::LidarNumbers;
+use super::component_images::POSES;
 use super::layout::{VEHICLE_POSE, files};
 use super::parquet_cursor::Cursors;
 use super::parquet_table::Table;
@@ -16,6 +17,7 @@ use super::segment::{
     BoxLabel, CameraCalibration, Frame, Image, Inclinations, Lidar, LidarCalibration, Place,
     Segment, camera_name,
 };
+use crate::files::check_present;
 use crate::transform::{A_POSE, pose_from_matrix};
 
 const LIDAR: &str = "lidar";
@@ -62,7 +64,7 @@ impl Components {
     pub(super) fn any_lidars(&self) -> Result<Vec<LidarCalibration>, Fault> {
         let mut fault = Fault::new("waymo-layout", VEHICLE_POSE, "a segment", "none");
         for segment in &self.segments {
-            match self.lidars(segment) {
+            match self.check_components(segment).and_then(|()| self.lidars(segment)) {
                 Ok(lidars) => return Ok(lidars),
                 Err(broken) => fault = broken,
             }
@@ -87,6 +89,7 @@ impl Components {
 
     fn read_segment(&self, name: &str) -> Result<Segment, Fault> {
         let mut warnings = Vec::new();
+        self.check_components(name)?;
         let lidars = self.lidars(name)?;
         let mut seen = self.lidar_rows(name, &mut warnings)?;
         let mut boxes = self.optional("lidar_box", name, &mut warnings, box_rows)?;
@@ -112,6 +115,14 @@ impl Components {
         };
         let frames = rows.into_iter().map(frame).collect();
         Ok(Segment { lidars, cameras, frames, warnings })
+    }
+
+    /// Whether the components that a segment cannot do without are there; the fault names all that are
+    /// not, with the lidars' poses, which only some sweeps need.
+    fn check_components(&self, segment: &str) -> Result<(), Fault> {
+        let files = [LIDAR_CALIBRATION, LIDAR, VEHICLE_POSE, POSES];
+        let files = files.map(|component| file(component, segment));
+        check_present(&self.root, &files[..3]).or_else(|_| check_present(&self.root, &files))
     }
 
     /// A component's file, all its rows of this segment.

@@ -54,6 +54,12 @@ fn text_files_that_are_absent_spoil_the_scene() {
         let fault = load(&root).unwrap_err();
         assert_eq!((fault.rule, fault.place), ("missing-file", format!("sequences/00/{file}")));
     }
+    let root = tiny();
+    for file in ["poses.txt", "times.txt"] {
+        fs::remove_file(root.path().join("sequences/00").join(file)).unwrap();
+    }
+    let both = "sequences/00/poses.txt, sequences/00/times.txt";
+    assert_eq!(load(&root).unwrap_err().place, both);
 }
 
 #[test]
