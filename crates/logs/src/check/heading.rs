@@ -40,7 +40,7 @@ fn ways(sweeps: &[SweepHeader]) -> Vec<[&SweepHeader; 2]> {
     let (mut anchors, mut pairs) = (BTreeMap::new(), BTreeMap::new());
     for sweep in sweeps {
         let anchor: &mut &SweepHeader = anchors.entry(sweep.lidar.as_str()).or_insert(sweep);
-        let way_m = way(*anchor, sweep).norm();
+        let way_m = way(anchor, sweep).norm();
         if way_m < WAY_M {
             continue;
         }
