@@ -5,8 +5,11 @@ use std::path::Path;
 
 use crate::{argoverse2, kitti360, mcap, nuscenes, semantickitti, waymo};
 
-/// Each format as `--format` names it, and whether a folder has its files. What looks far comes last.
-const SIGNS: [(&str, fn(&Path) -> bool); 5] = [
+/// Whether a folder has a format's files.
+type Sign = fn(&Path) -> bool;
+
+/// Each format as `--format` names it, and its sign. What looks far comes last.
+const SIGNS: [(&str, Sign); 5] = [
     ("nuscenes", nuscenes::has_tables),
     ("waymo", waymo::has_frames),
     ("mcap", mcap::has_files),
@@ -17,7 +20,7 @@ const SIGNS: [(&str, fn(&Path) -> bool); 5] = [
 /// The name of the format whose files a folder holds, as `--format` has it; none if it is none's, or
 /// cannot be read.
 pub fn looks_like(root: &Path) -> Option<&'static str> {
-    SIGNS.into_iter().find(|(_, is_shown)| is_shown(root)).map(|(name, _)| name)
+    SIGNS.into_iter().find(|(_, has_files)| has_files(root)).map(|(name, _)| name)
 }
 
 /// Links to folders are not followed.
