@@ -73,3 +73,12 @@ fn only_wanted_scenes_choose_the_reference_lidar() {
     let fault = McapLog::resolve(folder.path(), Some(&absent), &options().settings).unwrap_err();
     assert_eq!(fault.rule, "scene-unknown");
 }
+
+#[test]
+fn a_description_names_the_raw_labels_of_the_first_clouds() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "a.mcap", &drive(Told::Json));
+    let lines = McapLog::open(folder.path(), options()).unwrap().describe("a").unwrap();
+    let at = lines.iter().position(|line| line == "[reader.mcap.classes]").unwrap();
+    assert_eq!(lines[at + 1..at + 3], ["7 = \"rock\"", "9 = \"9\""]);
+}

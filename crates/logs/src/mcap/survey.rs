@@ -6,9 +6,11 @@ use std::path::Path;
 use occlabel_core::{Fault, McapSettings};
 
 use super::classes::label_names;
-use super::container::Container;
+use super::container::{Container, Message};
+use super::dispatch::{Decoded, decode};
 use super::layout::{FrameRoles, lidar_names};
 use super::options::{McapOptions, Purpose, purpose};
+use super::points::Points;
 use super::recording::Recording;
 use super::sweeps::label_field;
 use crate::notes::Notes;
@@ -37,8 +39,32 @@ pub(super) fn survey(root: &Path, file: &str, options: &McapOptions) -> Result<V
     let told =
         |(topic, fields): (&str, &[String])| format!("{topic}: points of {}", fields.join(", "));
     lines.extend(fields.into_iter().map(told));
-    lines.extend(table(&filled_in(&recording, &options.settings)));
+    let mut filled = filled_in(&recording, &options.settings);
+    for raw in raw_labels(root, &recording, &filled) {
+        filled.classes.entry(raw.clone()).or_insert(raw);
+    }
+    lines.push("# as a file for --config:".into());
+    lines.extend(table(&filled));
     Ok(lines)
+}
+
+/// The raw labels in the first cloud of each topic; a cloud that cannot be read tells of none.
+fn raw_labels(root: &Path, recording: &Recording, settings: &McapSettings) -> BTreeSet<String> {
+    let mut labels = BTreeSet::new();
+    let mut takes = |message: &Message| {
+        if let Ok(Some(Decoded::Cloud(cloud))) = decode(message, false)
+            && let Ok(points) = Points::new(&cloud)
+            && let Ok(raw) = points.numbers(&settings.label_field)
+        {
+            labels.extend(raw.map(|raw| (raw as i64).to_string()));
+        }
+        true
+    };
+    let wanted = |channel: &_| purpose(settings, channel) == Some(Purpose::Sweeps);
+    if let Ok(mut container) = Container::open(root, &recording.file, settings.max_record_bytes) {
+        let _ = container.first_of_each(&recording.contents, wanted, &mut takes);
+    }
+    labels
 }
 
 /// The settings as a file states them.
