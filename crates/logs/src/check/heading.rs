@@ -102,7 +102,7 @@ mod tests {
             sweep.world_from_ego.rotation = nalgebra::UnitQuaternion::new_normalize(mixed);
         }
         let fault = heading(&sweeps).expect("a half turn about z");
-        assert!(fault.found.starts_with("179."), "{fault}");
+        assert!(fault.found.starts_with("180.0 degrees"), "{fault}");
         assert!(fault.hint.is_some_and(|hint| hint.contains("--quat-order")));
     }
 
