@@ -324,11 +324,11 @@ fn fault_20_heights_of_zero_on_a_hill_are_told_with_the_grounds_thickness() {
     let thin = found.json["scenes"]["hill"]["ground_thickness_m"].as_f64().expect("a ground");
     assert!(thin < 0.15, "{thin}");
     flatten(&log, false);
-    checked("nuscenes", &log, &[]).finds(3, "warning", &["level-world"]);
+    checked("nuscenes", &log, &[]).finds(3, "warning", &["boxes-empty", "level-world"]);
     let label = Label::new(&log, &folder.path().join("out")).small();
     assert_eq!(warned(&label, "level-world").len(), 1);
     flatten(&log, true);
-    let found = checked("nuscenes", &log, &[]).finds(3, "warning", &["level-world"]);
+    let found = checked("nuscenes", &log, &[]).finds(3, "warning", &["boxes-empty", "level-world"]);
     let told = found.one("level-world")["found"].as_str().expect("text").to_owned();
     assert!(told.contains("0 at all ") && told.ends_with(" m thick"), "{told}");
 }

@@ -91,11 +91,13 @@ fn the_printed_table_says_all_and_can_be_given_back() {
 }
 
 #[test]
-fn tables_of_other_formats_stand_in_no_manifest() {
+fn tables_of_other_formats_are_refused_and_stand_in_no_manifest() {
     let drive = Drive::new();
     let log = drive.simulate("nuscenes");
-    drive.label("nuscenes", &log, "a", &["--set", "reader.mcap.time_unit_s=1e-6"]).exits(0);
-    assert!(reader_table(&drive.path("a")).is_null());
+    let ended = drive.label("nuscenes", &log, "a", &["--set", "reader.mcap.time_unit_s=1e-6"]);
+    ended.exits(2).tells(&["reader.mcap", "`--format mcap`"]);
+    drive.label("nuscenes", &log, "b", &[]).exits(0);
+    assert!(reader_table(&drive.path("b")).is_null());
 }
 
 #[test]

@@ -24,7 +24,8 @@ const AXES_HINT: &str = "the ego frame has x ahead, y left, z up: look at the ax
 pub(super) fn heading(sweeps: &[SweepHeader]) -> Option<Fault> {
     let mut angles_deg: Vec<f64> = ways(sweeps).into_iter().map(angle_deg).collect();
     angles_deg.sort_by(f64::total_cmp);
-    let median_deg = *angles_deg.get(angles_deg.len() / 2)?;
+    // The lower of two middles: one wrong pose spoils two ways.
+    let median_deg = *angles_deg.get(angles_deg.len().checked_sub(1)? / 2)?;
     if angles_deg.len() < MIN_WAYS || median_deg <= LARGEST_ANGLE_DEG {
         return None;
     }
