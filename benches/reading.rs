@@ -8,6 +8,17 @@
 //!
 //! One thread; files were just written or read once before, so that disks do not count. Bytes are
 //! those of the scenes' files, packed as they are.
+//!
+//! One run in release, 80 sweeps of a simulated crossing (2.7 million points); labelling takes some
+//! 0.2 million points a second:
+//!
+//! ```text
+//! format             MB   plain MB/s   read MB/s   ratio   Mpoints/s
+//! nuscenes         54.7         9319        3073   0.330      152.27
+//! mcap             38.3         2142         353   0.165       24.97
+//! semantickitti    44.4        11149        4076   0.366      248.40
+//! waymo (v1)       13.4        13426         122   0.009       24.64
+//! ```
 
 use std::collections::BTreeSet;
 use std::fs;
