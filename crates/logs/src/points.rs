@@ -1,7 +1,11 @@
 //! The points of a sweep's file.
 
+use std::path::Path;
+
 use nalgebra::Point3;
-use occlabel_core::Fault;
+use occlabel_core::{Fault, SweepHeader};
+
+use crate::files::file_bytes;
 
 /// Numbers a point in a sweep's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,8 +28,14 @@ impl PointColumns {
     }
 
     /// Bytes of a point.
-    pub(crate) fn bytes(self) -> usize {
+    fn bytes(self) -> usize {
         4 * self.count()
+    }
+
+    /// How many points the files of sweeps hold, by their sizes; an absent one holds none.
+    pub(crate) fn points_in(self, root: &Path, sweeps: &[SweepHeader]) -> u64 {
+        let points = |sweep: &SweepHeader| file_bytes(root, &sweep.file) / self.bytes() as u64;
+        sweeps.iter().map(points).sum()
     }
 }
 

@@ -62,12 +62,7 @@ impl PlannedScene {
             findings.warn(job.console, name, &fault);
         }
         job.opened.rules.check_labels(&scene).map_err(Refused::Configuration)?;
-        scene.warnings.iter().for_each(|fault| findings.warn(job.console, name, fault));
-        for lack in lacks(&scene, &job.opened.config) {
-            findings.warn(job.console, name, &lack);
-        }
-        let odd = check_poses(&scene, None);
-        odd.iter().for_each(|fault| findings.warn(job.console, name, fault));
+        warn_of(job, &scene, findings);
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
@@ -98,6 +93,14 @@ impl PlannedScene {
             self.name, self.sweeps, self.memory_bytes,
         )
     }
+}
+
+/// What is odd about a scene, in its records and its poses, and what it lacks.
+fn warn_of(job: &Job, scene: &Scene, findings: &mut Findings) {
+    let lacks = lacks(scene, &job.opened.config);
+    let odd = check_poses(scene, None);
+    let faults = scene.warnings.iter().chain(&lacks).chain(&odd);
+    faults.for_each(|fault| findings.warn(job.console, &scene.name, fault));
 }
 
 fn refused_load(job: &Job, fault: Fault) -> Refused {

@@ -23,7 +23,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use nalgebra::Point3;
 use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
 
-use crate::files::{file_bytes, read_file};
+use crate::files::read_file;
 use crate::kitti_labels::{class_name, decode_labels};
 use crate::names::{nearest_names, quoted};
 use crate::points::decode_points;
@@ -178,9 +178,7 @@ impl SceneSource for Kitti360Log {
     }
 
     fn scene_points(&self, scene: &Scene) -> u64 {
-        let point_bytes = PointColumns::Four.bytes() as u64;
-        let points = |sweep: &SweepHeader| file_bytes(&self.root, &sweep.file) / point_bytes;
-        scene.sweeps.iter().map(points).sum()
+        PointColumns::Four.points_in(&self.root, &scene.sweeps)
     }
 
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {

@@ -32,7 +32,6 @@ use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
 
-use crate::files::file_bytes;
 use crate::{ImageFile, PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
 #[cfg(any(test, fuzzing))]
@@ -151,9 +150,8 @@ impl SceneSource for NuScenesLog {
     }
 
     fn scene_points(&self, scene: &Scene) -> u64 {
-        let point_bytes = self.options.columns.unwrap_or(PointColumns::Five).bytes() as u64;
-        let points = |sweep: &SweepHeader| file_bytes(&self.root, &sweep.file) / point_bytes;
-        scene.sweeps.iter().map(points).sum()
+        let columns = self.options.columns.unwrap_or(PointColumns::Five);
+        columns.points_in(&self.root, &scene.sweeps)
     }
 
     fn read_sweep(&self, sweep: &SweepHeader) -> Result<SweepPoints, Fault> {
