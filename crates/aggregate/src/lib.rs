@@ -41,6 +41,7 @@
 //! ```
 
 mod accumulate;
+mod beam_order;
 mod compose;
 mod split;
 

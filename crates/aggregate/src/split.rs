@@ -6,6 +6,8 @@ use occlabel_core::{
     PointLabel, RigidMap, Sweep, TrackId,
 };
 
+use crate::beam_order::beam_order;
+
 /// What is left out of a sweep, and how boxes are grown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SplitSettings {
@@ -40,7 +42,7 @@ pub struct SplitSweep {
 }
 
 /// Sorts the points of a sweep: dropped, inside a box, or background. `boxes` are those of the
-/// sweep's time.
+/// sweep's time. The points come out beam by beam.
 pub fn split_sweep(sweep: &Sweep, boxes: &[TrackBox], settings: &SplitSettings) -> SplitSweep {
     let world_from_lidar = RigidMap::from(&sweep.header.world_from_lidar());
     let cloud = &sweep.cloud;
@@ -49,7 +51,8 @@ pub fn split_sweep(sweep: &Sweep, boxes: &[TrackBox], settings: &SplitSettings) 
     let origins = cloud.origins.iter().map(|origin| world_from_lidar.apply(origin)).collect();
     let mut background = PointCloud::with_origins(origins);
     let mut dropped = DropCounts::default();
-    for i in 0..cloud.len() {
+    for i in beam_order(cloud) {
+        let i = i as usize;
         let label = match filter.judge(i, &mut dropped) {
             Some(label) => label,
             None => continue,
