@@ -98,7 +98,7 @@ mod tests {
     fn scene(times: &[i64], class: ClassId) -> AggregatedScene<ClassId> {
         let cloud =
             || PointCloud::from_one_origin(Point3::origin(), vec![Point3::origin()], vec![class]);
-        let background = |&s: &i64| BackgroundSweep { time: seconds(s), cloud: cloud() };
+        let background = |&s: &i64| BackgroundSweep::new(seconds(s), cloud());
         let object = |&s: &i64| ObjectSweep {
             track: TrackId(1),
             time: seconds(s),

@@ -66,7 +66,7 @@ pub fn split_sweep(sweep: &Sweep, boxes: &[TrackBox], settings: &SplitSettings) 
         }
     }
     SplitSweep {
-        background: BackgroundSweep { time: sweep.header.time, cloud: background },
+        background: BackgroundSweep::new(sweep.header.time, background),
         objects: drawers.into_iter().filter_map(|drawer| drawer.close(sweep)).collect(),
         dropped,
     }

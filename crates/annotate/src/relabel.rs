@@ -94,7 +94,7 @@ fn relabel_sweep(
         }
         class => class,
     });
-    (BackgroundSweep { time: sweep.time, cloud }, drops)
+    (BackgroundSweep::new(sweep.time, cloud), drops)
 }
 
 /// Points to a parallel task: enough to repay its start.
@@ -159,7 +159,7 @@ mod tests {
     fn scene(points: &[(f64, Option<ClassId>)]) -> AggregatedScene<Option<ClassId>> {
         let mut cloud = PointCloud::with_origins(vec![Point3::origin()]);
         points.iter().for_each(|(x, label)| cloud.push(Point3::new(*x, 0.0, 0.0), *label, 0));
-        let background = vec![BackgroundSweep { time: Timestamp(0), cloud }];
+        let background = vec![BackgroundSweep::new(Timestamp(0), cloud)];
         AggregatedScene { background, objects: Vec::new(), dropped: DropCounts::default() }
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Point3;
 
-use crate::{Box3, ClassId, PointCloud, Timestamp, TrackId};
+use crate::{Box3, Bundles, ClassId, PointCloud, Timestamp, TrackId};
 
 /// A scene's points: what stands in the world, and what moves with a track.
 ///
@@ -24,6 +24,17 @@ pub struct BackgroundSweep<L> {
     pub time: Timestamp,
     /// Its points.
     pub cloud: PointCloud<L>,
+    /// Boxes around neighbouring points.
+    pub bundles: Bundles,
+}
+
+impl<L> BackgroundSweep<L> {
+    /// A sweep of points in world coordinates. The more neighbours stand beside each other, the
+    /// faster they are worked on.
+    pub fn new(time: Timestamp, cloud: PointCloud<L>) -> Self {
+        let bundles = Bundles::of(&cloud.positions);
+        Self { time, cloud, bundles }
+    }
 }
 
 /// The points of one track in one sweep. Box coordinates of that moment, ray origins too.

@@ -9,10 +9,13 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::Fault;
+use crate::{Fault, RigidMap};
 
 /// Lattice units along one voxel edge (labels.md section 8).
 pub const LATTICE: i64 = 2048;
+
+/// Lattice coordinates from which 32 bits do not suffice: a quarter of a million voxels away.
+pub const FAR_LANE: i32 = 1 << 29;
 
 /// The grid's shape, checked: half-open cells, C order, z fastest.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,6 +112,49 @@ impl GridSpec {
         LatticePoint([snap_axis(u.x), snap_axis(u.y), snap_axis(u.z)])
     }
 
+    /// [`Self::snap`] of points that `place` brings into the grid frame, axis by axis, side by side.
+    ///
+    /// The same numbers, but that coordinates of [`FAR_LANE`] and more saturate there: points so far
+    /// away have to be snapped one by one.
+    #[inline(always)]
+    pub fn snap_lanes<const N: usize>(
+        &self,
+        place: &RigidMap,
+        points: &[Point3<f64>; N],
+    ) -> [[i32; N]; 3] {
+        let mut placed = [[0.0; N]; 3];
+        for lane in 0..N {
+            let p = place.apply(&points[lane]);
+            (placed[0][lane], placed[1][lane], placed[2][lane]) = (p.x, p.y, p.z);
+        }
+        let mut snapped = [[0; N]; 3];
+        let mut is_sure = true;
+        for axis in 0..3 {
+            let (min, per_m) = (self.min_m[axis], (LATTICE / 2) as f64 / self.size_m[axis]);
+            for lane in 0..N {
+                let half = (placed[axis][lane] - min) * per_m;
+                snapped[axis][lane] = snap_lane(half);
+                let beyond = half - f64::from((snapped[axis][lane] - 1) / 2);
+                is_sure &= (beyond > UNSURE) & (beyond < 1.0 - UNSURE);
+            }
+        }
+        if is_sure { snapped } else { self.snap_lanes_by_division(&placed) }
+    }
+
+    /// The few whose last digit decides are divided, as the rule says.
+    #[cold]
+    #[inline(never)]
+    fn snap_lanes_by_division<const N: usize>(&self, placed: &[[f64; N]; 3]) -> [[i32; N]; 3] {
+        let mut snapped = [[0; N]; 3];
+        for axis in 0..3 {
+            for lane in 0..N {
+                let u = (placed[axis][lane] - self.min_m[axis]) / self.size_m[axis];
+                snapped[axis][lane] = snap_lane(u * (LATTICE / 2) as f64);
+            }
+        }
+        snapped
+    }
+
     /// The centre of a voxel on the lattice, exactly.
     #[inline]
     pub fn lattice_centre(&self, voxel: VoxelIndex) -> LatticePoint {
@@ -174,6 +220,22 @@ impl GridSpec {
 fn snap_axis(u: f64) -> i64 {
     const FAR: f64 = (1_i64 << 60) as f64;
     2 * (u * (LATTICE / 2) as f64).floor().clamp(-FAR, FAR) as i64 + 1
+}
+
+/// How near to a lattice point's limit a product may be taken for a quotient: for coordinates below
+/// [`FAR_LANE`] the two differ by less than 2e-7.
+const UNSURE: f64 = 1e-6;
+
+/// `2 * floor(half) + 1` in 32 bits, in operations that every vector unit has: the sum with
+/// [`WHOLE`] holds the nearest whole number in its last bits.
+#[inline(always)]
+fn snap_lane(half: f64) -> i32 {
+    const FAR: f64 = (FAR_LANE / 2) as f64;
+    const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
+    let half = if half < FAR { half } else { FAR };
+    let half = if half > -FAR - 1.0 { half } else { -FAR - 1.0 };
+    let nearest = (half + WHOLE).to_bits() as i32;
+    2 * (nearest - i32::from(f64::from(nearest) > half)) + 1
 }
 
 fn voxels_along(axis: usize, min: f64, max: f64, size: f64) -> Result<u64, Fault> {

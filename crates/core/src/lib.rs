@@ -19,6 +19,7 @@
 
 mod aggregated;
 mod boxes;
+mod bundles;
 pub mod camera;
 mod class;
 mod cloud;
@@ -32,6 +33,7 @@ mod occupancy;
 mod palette;
 mod pose;
 mod scene;
+mod simd;
 mod taxonomy;
 mod time;
 mod traverse;
@@ -40,12 +42,13 @@ mod walk;
 
 pub use aggregated::{AggregatedScene, BackgroundSweep, DropCounts, ObjectSweep};
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
+pub use bundles::{BUNDLE, Bundles, Reach};
 pub use camera::Camera;
 pub use class::{ClassId, ClassSet};
 pub use cloud::{PointCloud, PointLabel};
 pub use exposure::{EXPOSURE_WITHIN_S, nearest_exposure};
 pub use fault::{Fault, printable};
-pub use grid::{GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};
+pub use grid::{FAR_LANE, GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};
 pub use instant::{Instant, PlacedObject, StandingBox};
 pub use keyframes::{KeyframeSettings, KeyframeSource, reference_lidar};
 pub use mcap_settings::McapSettings;
@@ -55,6 +58,7 @@ pub use pose::{Pose, RigidMap, slerp};
 pub use scene::{
     Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, Refusal, Scene, Sweep, SweepHeader,
 };
+pub use simd::{Kernel, Level};
 pub use taxonomy::{Meaning, Taxonomy, TaxonomyError};
 pub use time::Timestamp;
 pub use traverse::{Traverse, traverse};

@@ -1,13 +1,23 @@
-//! One ray into the counts.
+//! Rays into counts.
+//!
+//! ```text
+//!   whole rays, 16 at a time --+-- end in the grid ------------> walked side by side at once
+//!                              +-- end outside, may pass it --+
+//!   parts of rays, one by one --------------------------------+-> wait until there are 16
+//!   rays too long for 32 bits, or under rules that steps do not tell -> walked alone
+//! ```
 
 use std::ops::ControlFlow;
 
-use occlabel_core::{GridSpec, LatticePoint, RayCounts, VoxelGrid, VoxelIndex, walk};
+use occlabel_core::{
+    GridSpec, Kernel, LatticePoint, Level, RayCounts, VoxelGrid, VoxelIndex, walk,
+};
 
-use crate::{Outside, RayRules, RaySettings};
-
-/// Slack of the metric rules against rounding, metres.
-const EPSILON_M: f64 = 1e-9;
+use crate::cells::Cell;
+use crate::near::{NearRules, NearSteps, RayEnds};
+use crate::walkers::{MOST_VOXELS, Walks, walk_lanes};
+use crate::ways::{Batch, LANES, Lane, PARTS, Ways, all, any, fits};
+use crate::{Outside, RaySettings};
 
 /// A ray to cast: walked from `end` towards `origin`.
 #[derive(Clone, Copy, Debug)]
@@ -18,103 +28,198 @@ pub(crate) struct Ray {
     pub(crate) origin: LatticePoint,
     /// Whether the walk starts at the point itself and so hits its voxel.
     pub(crate) hits: bool,
-    /// The voxel of the true point.
-    pub(crate) point_voxel: VoxelIndex,
-    /// The voxel of the true origin.
-    pub(crate) origin_voxel: VoxelIndex,
-    /// Whether the point is of a flat class.
-    pub(crate) is_flat: bool,
+    /// The true ends, for the near rules.
+    pub(crate) ends: RayEnds,
 }
 
 impl Ray {
     /// A whole ray, from a point to its lidar.
-    pub(crate) fn whole(point: LatticePoint, origin: LatticePoint, is_flat: bool) -> Self {
-        let (point_voxel, origin_voxel) = (point.voxel(), origin.voxel());
-        Self { end: point, origin, hits: true, point_voxel, origin_voxel, is_flat }
+    pub(crate) fn whole(end: LatticePoint, origin: LatticePoint, is_flat: bool) -> Self {
+        let ends = RayEnds { point: end.voxel(), origin: origin.voxel(), is_flat };
+        Self { end, origin, hits: true, ends }
     }
 }
 
 /// Counts of the rays cast so far.
-pub(crate) struct Caster<'a> {
+pub(crate) struct Caster<'a, C> {
     spec: &'a GridSpec,
-    settings: &'a RaySettings,
-    counts: RayCounts,
+    level: Level,
+    clips: bool,
+    near: NearRules<'a>,
+    /// The near rules, if there are any, told in steps of whole rays, if they can be.
+    near_steps: Option<NearSteps>,
+    shape: [i32; 3],
+    strides: [i32; 3],
+    hits: VoxelGrid<u32>,
+    /// One for each voxel, and one that is nobody's.
+    cells: Vec<C>,
+    /// Rays that may begin or end outside the grid, until there are enough to cast.
+    waiting: Batch,
+    waiting_len: usize,
 }
 
-impl<'a> Caster<'a> {
-    pub(crate) fn new(spec: &'a GridSpec, rules: &RayRules<'a>) -> Self {
-        let counts =
-            RayCounts { hits: VoxelGrid::filled(spec, 0), crossings: VoxelGrid::filled(spec, 0) };
-        Self { spec, settings: rules.settings, counts }
+impl<'a, C: Cell> Caster<'a, C> {
+    pub(crate) fn new(spec: &'a GridSpec, settings: &'a RaySettings, level: Level) -> Self {
+        let near = NearRules::new(spec, settings);
+        Self {
+            spec,
+            level,
+            clips: settings.outside == Outside::Clip,
+            near,
+            near_steps: near.in_steps(),
+            shape: spec.shape().map(|n| n as i32),
+            strides: spec.strides().map(|n| n as i32),
+            hits: VoxelGrid::filled(spec, 0),
+            cells: vec![C::default(); spec.len() + 1],
+            waiting: Batch::empty(),
+            waiting_len: 0,
+        }
     }
 
-    pub(crate) fn into_counts(self) -> RayCounts {
-        self.counts
+    /// The counts.
+    pub(crate) fn into_counts(mut self) -> RayCounts {
+        self.cast_waiting();
+        self.cells.truncate(self.spec.len());
+        let crossings = self.cells.iter().map(|cell| cell.crossings()).collect();
+        RayCounts { hits: self.hits, crossings: VoxelGrid::from_values(self.spec, crossings) }
+    }
+
+    /// The instruction set to cast on.
+    pub(crate) fn level(&self) -> Level {
+        self.level
+    }
+
+    /// Whether rays that end outside the grid count.
+    pub(crate) fn clips(&self) -> bool {
+        self.clips
+    }
+
+    /// Whether whole rays can be cast in batches: the grid is not too large for it, and the near
+    /// rules, if there are any, can be told in steps.
+    pub(crate) fn takes_batches(&self) -> bool {
+        let shape = self.spec.shape();
+        (0..3).all(|axis| shape[axis] <= MOST_VOXELS[axis])
+            && (self.near_steps.is_some() || !self.near.are_any())
     }
 
     /// Counts the hit of a point alone.
-    #[inline]
     pub(crate) fn hit(&mut self, voxel: VoxelIndex) {
         if let Some(flat) = self.spec.flat(voxel) {
-            self.counts.hits.values_mut()[flat] += 1;
+            self.hits.values_mut()[flat] += 1;
         }
     }
 
     /// Counts a ray's hit and crossings.
-    #[inline]
     pub(crate) fn cast(&mut self, ray: &Ray) {
         if ray.hits {
-            self.hit(ray.point_voxel);
+            self.hit(ray.ends.point);
         }
-        let ends_outside = self.spec.flat(ray.point_voxel).is_none();
-        if ends_outside && self.settings.outside == Outside::Drop {
+        if !self.clips && self.spec.flat(ray.ends.point).is_none() {
             return;
         }
-        let crossings = self.counts.crossings.values_mut();
-        if !has_near_rules(self.settings, ray) {
-            return walk(self.spec, ray.end, ray.origin, |flat, _| {
-                crossings[flat] += 1;
-                ControlFlow::Continue(())
-            });
+        if self.near.are_any() || !self.takes_batches() || !fits(ray.end, ray.origin) {
+            return self.cast_alone(ray);
         }
-        let near = NearRules { spec: self.spec, settings: self.settings, ray };
+        self.waiting.put(self.waiting_len, ray.end, ray.origin);
+        self.waiting_len += 1;
+        if self.waiting_len == LANES {
+            self.level.run(CastWaiting(self));
+        }
+    }
+
+    /// Counts a ray's crossings in the plain way.
+    fn cast_alone(&mut self, ray: &Ray) {
+        let (near, cells) = (self.near, &mut self.cells);
+        let is_ruled = near.are_any();
         walk(self.spec, ray.end, ray.origin, |flat, voxel| {
-            crossings[flat] += u32::from(!near.forbid(voxel));
+            if !(is_ruled && near.forbid(voxel, &ray.ends)) {
+                cells[flat].cross();
+            }
             ControlFlow::Continue(())
         });
     }
-}
 
-fn has_near_rules(settings: &RaySettings, ray: &Ray) -> bool {
-    settings.ignore_near_hit_m > 0.0
-        || settings.ignore_near_origin_m > 0.0
-        || (ray.is_flat && settings.flat_ignore_dz_m > 0.0)
-}
-
-/// Where along a ray no crossing counts.
-struct NearRules<'a> {
-    spec: &'a GridSpec,
-    settings: &'a RaySettings,
-    ray: &'a Ray,
-}
-
-impl NearRules<'_> {
-    #[inline]
-    fn forbid(&self, voxel: [i64; 3]) -> bool {
-        let (settings, ray) = (self.settings, self.ray);
-        self.is_within(settings.ignore_near_hit_m, voxel, ray.point_voxel)
-            || self.is_within(settings.ignore_near_origin_m, voxel, ray.origin_voxel)
-            || (ray.is_flat && self.is_beside_ground(voxel))
+    /// Counts the hits and crossings of whole rays.
+    #[inline(always)]
+    pub(crate) fn cast_batch(&mut self, batch: &mut Batch) {
+        let inside = batch.ends_inside(self.shape);
+        if !all(&inside) {
+            self.put_aside(batch, &inside);
+        }
+        if !any(&inside) {
+            return;
+        }
+        for lane in 0..LANES {
+            if inside[lane] != 0 {
+                self.hits.values_mut()[batch.end_flat(lane, self.strides)] += 1;
+            }
+        }
+        match self.near_steps {
+            Some(near) => self.cast_inside::<true>(batch, Some(near)),
+            None => self.cast_inside::<false>(batch, None),
+        }
     }
 
-    fn is_within(&self, limit_m: f64, voxel: [i64; 3], other: VoxelIndex) -> bool {
-        let size = self.spec.size_m();
-        let l1: f64 = (0..3).map(|a| (voxel[a] - other.0[a]).abs() as f64 * size[a]).sum();
-        limit_m > 0.0 && l1 <= limit_m + EPSILON_M
+    /// Takes those that end outside the grid out of a batch, to be cast later if they may tell
+    /// anything.
+    #[inline(always)]
+    fn put_aside(&mut self, batch: &mut Batch, inside: &Lane) {
+        let passing = batch.may_pass(self.shape);
+        for lane in 0..LANES {
+            if inside[lane] == 0 {
+                if passing[lane] != 0 && self.clips {
+                    self.wait(batch, lane);
+                }
+                batch.remove(lane);
+            }
+        }
     }
 
-    fn is_beside_ground(&self, voxel: [i64; 3]) -> bool {
-        let dz = (voxel[2] - self.ray.point_voxel.0[2]).abs() as f64 * self.spec.size_m().z;
-        dz < self.settings.flat_ignore_dz_m - EPSILON_M
+    #[inline(always)]
+    fn wait(&mut self, batch: &Batch, lane: usize) {
+        self.waiting.copy(self.waiting_len, batch, lane);
+        self.waiting_len += 1;
+        if self.waiting_len == LANES {
+            self.cast_waiting();
+        }
+    }
+
+    /// Counts the crossings of rays that end in the grid.
+    #[inline(always)]
+    fn cast_inside<const RULED: bool>(&mut self, batch: &Batch, near: Option<NearSteps>) {
+        let ways = Ways::new(batch);
+        let total = ways.faces_before(&[PARTS; LANES]);
+        let mut walks = Walks::new(&ways, [[0; LANES]; 3], &total, self.shape);
+        if let Some(near) = near {
+            near.apply(&mut walks, &total, &batch.flat);
+        }
+        walk_lanes::<C, RULED>(&ways, walks, self.strides, &mut self.cells);
+    }
+
+    /// Counts the crossings of rays that begin and end anywhere.
+    #[inline(always)]
+    fn cast_waiting(&mut self) {
+        let ways = Ways::new(&self.waiting);
+        let total = ways.faces_before(&[PARTS; LANES]);
+        let from = ways.faces_before(&ways.part_before_grid(self.shape));
+        let mut walks = Walks::new(&ways, from, &total, self.shape);
+        if let Some(near) = self.near_steps {
+            near.apply(&mut walks, &total, &self.waiting.flat);
+        }
+        walk_lanes::<C, true>(&ways, walks, self.strides, &mut self.cells);
+        self.waiting = Batch::empty();
+        self.waiting_len = 0;
+    }
+}
+
+/// Casts the waiting rays.
+struct CastWaiting<'r, 'a, C>(&'r mut Caster<'a, C>);
+
+impl<C: Cell> Kernel for CastWaiting<'_, '_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.0.cast_waiting();
     }
 }

@@ -7,12 +7,14 @@
 //! ```
 //! use nalgebra::Point3;
 //! use occlabel_core::*;
-//! use occlabel_raycast::{ObjectRays, Outside, RayRules, RaySettings, count};
+//! use occlabel_raycast::{
+//!     Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, count,
+//! };
 //!
 //! let wall = vec![Point3::new(3.5, 0.5, 0.5)];
 //! let cloud = PointCloud::from_one_origin(Point3::new(0.5, 0.5, 0.5), wall, vec![ClassId(0)]);
 //! let scene = AggregatedScene {
-//!     background: vec![BackgroundSweep { time: Timestamp(0), cloud }],
+//!     background: vec![BackgroundSweep::new(Timestamp(0), cloud)],
 //!     objects: vec![],
 //!     dropped: DropCounts::default(),
 //! };
@@ -26,18 +28,23 @@
 //! };
 //! let spec = GridSpec::new([0.0; 3], [4.0, 1.0, 1.0], [1.0; 3])?;
 //! let rules = RayRules { settings: &settings, flat: &ClassSet::default() };
-//! let counts = count(&Instant::still(&scene), &spec, &rules, 1);
+//! let counts = count(&Instant::still(&scene), &spec, &rules, &Casting::new(Crossings::HowMany, 1));
 //! assert_eq!(counts.crossings.values(), [1, 1, 1, 0]);
 //! assert_eq!(counts.hits.values(), [0, 0, 0, 1]);
 //! # Ok::<(), Fault>(())
 //! ```
 
 mod caster;
+mod cells;
 mod classify;
 mod count;
+mod near;
 mod settings;
+mod sweep_rays;
+mod walkers;
+mod ways;
 mod work;
 
 pub use classify::{Conflict, StateSettings, classify};
-pub use count::count;
+pub use count::{Casting, Crossings, count};
 pub use settings::{ObjectRays, Outside, RayRules, RaySettings};

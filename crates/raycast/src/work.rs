@@ -7,6 +7,9 @@ use occlabel_core::{
 };
 
 use crate::caster::{Caster, Ray};
+use crate::cells::Cell;
+use crate::near::RayEnds;
+use crate::sweep_rays::SweepRays;
 use crate::{ObjectRays, RayRules};
 
 /// Points of a piece of work: enough to repay a thread, few enough to share out evenly.
@@ -62,17 +65,18 @@ impl<'a> Work<'a> {
     }
 
     /// Casts the rays.
-    pub(crate) fn cast(
+    pub(crate) fn cast<C: Cell>(
         &self,
         instant: &Instant,
         spec: &GridSpec,
         rules: &RayRules,
-        caster: &mut Caster,
+        caster: &mut Caster<C>,
     ) {
         let points = self.points.clone();
         match self.kind {
             Kind::Background(sweep) => {
-                cast_background(sweep, points, &instant.grid_from_world, spec, rules, caster);
+                let place = RigidMap::from(&instant.grid_from_world);
+                SweepRays { sweep, place, spec, flat: rules.flat }.cast(points, caster);
             }
             Kind::ObjectPart(placed, pose) => {
                 let place = RigidMap::from(&pose);
@@ -116,23 +120,6 @@ impl<'a> Kind<'a> {
     }
 }
 
-fn cast_background(
-    sweep: &BackgroundSweep<ClassId>,
-    points: Range<usize>,
-    grid_from_world: &Pose,
-    spec: &GridSpec,
-    rules: &RayRules,
-    caster: &mut Caster,
-) {
-    let place = RigidMap::from(grid_from_world);
-    let cloud = &sweep.cloud;
-    for i in points {
-        let point = spec.snap(&place.apply(&cloud.positions[i]));
-        let origin = spec.snap(&place.apply(&cloud.origin(i)));
-        caster.cast(&Ray::whole(point, origin, rules.flat.contains(cloud.labels[i])));
-    }
-}
-
 fn snapped_point(
     placed: &PlacedObject,
     i: usize,
@@ -169,9 +156,11 @@ fn object_part(
         end,
         origin: spec.snap(&place.apply(&entry)),
         hits: true,
-        point_voxel: end.voxel(),
-        origin_voxel: spec.snap(&place.apply(&origin)).voxel(),
-        is_flat: rules.flat.contains(placed.object.cloud.labels[i]),
+        ends: RayEnds {
+            point: end.voxel(),
+            origin: spec.snap(&place.apply(&origin)).voxel(),
+            is_flat: rules.flat.contains(placed.object.cloud.labels[i]),
+        },
     }
 }
 
@@ -193,8 +182,10 @@ fn world_part(
         end: spec.snap(&place.apply(&entry)),
         origin: snapped_origin,
         hits: false,
-        point_voxel: spec.snap(&place.apply(&point)).voxel(),
-        origin_voxel: snapped_origin.voxel(),
-        is_flat: rules.flat.contains(placed.object.cloud.labels[i]),
+        ends: RayEnds {
+            point: spec.snap(&place.apply(&point)).voxel(),
+            origin: snapped_origin.voxel(),
+            is_flat: rules.flat.contains(placed.object.cloud.labels[i]),
+        },
     })
 }

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 use occlabel_core::{
     BackgroundSweep, Box3, BoxGrowth, ClassId, ClassSet, GridSpec, GrownBox, Instant, LatticePoint,
-    ObjectSweep, PlacedObject, PointCloud, Pose, RayCounts, RigidMap, StandingBox, Timestamp,
-    TrackId, traverse,
+    Level, ObjectSweep, PlacedObject, PointCloud, Pose, RayCounts, RigidMap, StandingBox,
+    Timestamp, TrackId, traverse,
 };
-use occlabel_raycast::{ObjectRays, Outside, RayRules, RaySettings, count};
+use occlabel_raycast::{Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, count};
 use proptest::prelude::*;
 
 const ROAD: ClassId = ClassId(11);
@@ -25,6 +25,14 @@ fn section_8_counts_are_what_the_rules_say_ray_by_ray() {
         let counts = case.count(case.shards);
         prop_assert_eq!(case.dense(&oracle.hits), counts.hits.values(), "hits");
         prop_assert_eq!(case.dense(&oracle.crossings), counts.crossings.values(), "crossings");
+        for level in Level::all() {
+            let casting = Casting { level, ..Casting::new(Crossings::HowMany, case.shards) };
+            prop_assert_eq!(&case.count_by(&casting), &counts, "{:?}", level);
+            let marks = case.count_by(&Casting { crossings: Crossings::Whether, ..casting });
+            prop_assert_eq!(&marks.hits, &counts.hits, "{:?}", level);
+            let are_any = |counts: &RayCounts| counts.crossings.map(|&n| n > 0);
+            prop_assert_eq!(are_any(&marks), are_any(&counts), "{:?}", level);
+        }
         tally.borrow_mut().add(&oracle.tally);
     });
     tally.borrow().assert_at_least(&[
@@ -434,6 +442,10 @@ impl Case {
 /// The same case in the words of the crates.
 impl Case {
     fn count(&self, shards: usize) -> RayCounts {
+        self.count_by(&Casting::new(Crossings::HowMany, shards))
+    }
+
+    fn count_by(&self, casting: &Casting) -> RayCounts {
         let flat: ClassSet = [ROAD].into_iter().collect();
         let rules = RayRules { settings: &self.settings, flat: &flat };
         let background: Vec<_> =
@@ -448,7 +460,7 @@ impl Case {
             objects: placed.flat_map(|(track, sweeps)| self.placed(track, sweeps)).collect(),
             standing: self.tracks.iter().filter_map(|track| self.standing(track)).collect(),
         };
-        count(&instant, &self.spec(), &rules, shards)
+        count(&instant, &self.spec(), &rules, casting)
     }
 
     fn spec(&self) -> GridSpec {
@@ -463,7 +475,7 @@ impl Case {
             class: ray.class,
         });
         let cloud = cloud(&rays.collect::<Vec<_>>());
-        BackgroundSweep { time: Timestamp(sweep.time), cloud }
+        BackgroundSweep::new(Timestamp(sweep.time), cloud)
     }
 
     fn boxed(&self, grid_from_box: &Pose, size_m: Vector3<f64>) -> Box3 {

@@ -6,7 +6,7 @@ use occlabel_core::{
     GrownBox, Instant, ObjectSweep, PlacedObject, PointCloud, Pose, RayCounts, StandingBox,
     Timestamp, TrackId,
 };
-use occlabel_raycast::{ObjectRays, Outside, RayRules, RaySettings, count};
+use occlabel_raycast::{Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, count};
 
 const ROAD: ClassId = ClassId(11);
 const POLE: ClassId = ClassId(15);
@@ -48,14 +48,15 @@ fn ray(origin: [f64; 3], end: [f64; 3], class: ClassId) -> PointCloud<ClassId> {
 
 /// Background clouds, seen so many ns after the keyframe.
 fn scene(clouds: Vec<(i64, PointCloud<ClassId>)>) -> AggregatedScene<ClassId> {
-    let sweep = |(after, cloud)| BackgroundSweep { time: Timestamp(NOW + after), cloud };
+    let sweep = |(after, cloud)| BackgroundSweep::new(Timestamp(NOW + after), cloud);
     let background = clouds.into_iter().map(sweep).collect();
     AggregatedScene { background, objects: vec![], dropped: DropCounts::default() }
 }
 
 fn cast(instant: &Instant, spec: &GridSpec, settings: &RaySettings) -> RayCounts {
     let flat: ClassSet = [ROAD].into_iter().collect();
-    count(instant, spec, &RayRules { settings, flat: &flat }, 2)
+    let casting = Casting::new(Crossings::HowMany, 2);
+    count(instant, spec, &RayRules { settings, flat: &flat }, &casting)
 }
 
 fn cast_one(cloud: PointCloud<ClassId>, spec: &GridSpec, settings: &RaySettings) -> RayCounts {

@@ -12,7 +12,7 @@
 //! let labels = vec![ClassId(0), ClassId(1), ClassId(1)];
 //! let cloud = PointCloud::from_one_origin(Point3::new(5.0, 0.0, 0.0), positions, labels);
 //! let scene = AggregatedScene {
-//!     background: vec![BackgroundSweep { time: Timestamp(0), cloud }],
+//!     background: vec![BackgroundSweep::new(Timestamp(0), cloud)],
 //!     objects: vec![],
 //!     dropped: DropCounts::default(),
 //! };

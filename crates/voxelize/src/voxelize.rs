@@ -157,7 +157,7 @@ mod tests {
     fn vote(held: &Held, vote: Vote) -> Option<VoxelVote> {
         let classes = held.background.iter().map(|&class| ClassId(class)).collect();
         let scene = AggregatedScene {
-            background: vec![BackgroundSweep { time: Timestamp(0), cloud: cloud(classes) }],
+            background: vec![BackgroundSweep::new(Timestamp(0), cloud(classes))],
             objects: held.tracks.iter().map(object).collect(),
             dropped: DropCounts::default(),
         };

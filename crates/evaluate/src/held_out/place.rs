@@ -136,7 +136,7 @@ mod tests {
     fn held(objects: Vec<ObjectSweep>) -> AggregatedScene<Option<ClassId>> {
         let point = vec![Point3::new(7.0, 0.0, 0.0)];
         let cloud = PointCloud::from_one_origin(Point3::origin(), point, vec![None]);
-        let background = vec![BackgroundSweep { time: Timestamp(400_000_000), cloud }];
+        let background = vec![BackgroundSweep::new(Timestamp(400_000_000), cloud)];
         AggregatedScene { background, objects, dropped: DropCounts::default() }
     }
 
