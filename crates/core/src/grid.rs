@@ -9,7 +9,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::{Fault, RigidMap};
+use crate::{BUNDLE, Fault, RigidMap};
 
 /// Lattice units along one voxel edge (labels.md section 8).
 pub const LATTICE: i64 = 2048;
@@ -139,6 +139,28 @@ impl GridSpec {
             }
         }
         if is_sure { snapped } else { self.snap_lanes_by_division(&placed) }
+    }
+
+    /// The places in the flat array of the voxels that hold the points of a bundle, once `place` has
+    /// brought them into the grid frame. Lanes without a point have none.
+    ///
+    /// # Panics
+    /// If there are more points than in a bundle.
+    #[inline(always)]
+    pub fn flats_of(&self, place: &RigidMap, points: &[Point3<f64>]) -> [Option<usize>; BUNDLE] {
+        let mut bundle = [Point3::origin(); BUNDLE];
+        bundle[..points.len()].copy_from_slice(points);
+        let snapped = self.snap_lanes(place, &bundle);
+        let mut flats = [None; BUNDLE];
+        for (lane, point) in points.iter().enumerate() {
+            let q = [snapped[0][lane], snapped[1][lane], snapped[2][lane]].map(i64::from);
+            let is_far = q.iter().any(|q| q.abs() >= i64::from(FAR_LANE));
+            flats[lane] = match is_far {
+                true => self.flat_of(&place.apply(point)),
+                false => self.flat(LatticePoint(q).voxel()),
+            };
+        }
+        flats
     }
 
     /// The few whose last digit decides are divided, as the rule says.

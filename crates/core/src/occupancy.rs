@@ -41,8 +41,20 @@ pub struct OccupancyLabels {
     pub mask_lidar: VoxelGrid<u8>,
     /// 1 where some camera sees it and it is not unobserved.
     pub mask_camera: VoxelGrid<u8>,
+    /// The verdict on each voxel.
+    pub states: VoxelGrid<VoxelState>,
+    /// What the labels rest on, if it was asked for.
+    pub evidence: Option<Evidence>,
+}
+
+impl OccupancyLabels {
     /// What the labels rest on.
-    pub evidence: Evidence,
+    ///
+    /// # Panics
+    /// If it was not asked for.
+    pub fn evidence(&self) -> &Evidence {
+        self.evidence.as_ref().expect("labels made with their evidence")
+    }
 }
 
 /// The evidence arrays of one keyframe (labels.md section 11).

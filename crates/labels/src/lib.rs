@@ -8,7 +8,7 @@
 //! along leads out of the tree: a path is a [`TreePath`] or it is no path.
 //!
 //! ```
-//! use occlabel_core::{Evidence, GridSpec, OccupancyLabels, VoxelGrid};
+//! use occlabel_core::{GridSpec, OccupancyLabels, VoxelGrid, VoxelState};
 //! use occlabel_labels::{LabelTree, TreePath, WriterLock, labels_npz, read_labels};
 //!
 //! let spec = GridSpec::new([0.0; 3], [4.0, 4.0, 2.0], [1.0; 3])?;
@@ -16,14 +16,8 @@
 //!     semantics: VoxelGrid::filled(&spec, 17),
 //!     mask_lidar: VoxelGrid::filled(&spec, 1),
 //!     mask_camera: VoxelGrid::filled(&spec, 0),
-//!     evidence: Evidence {
-//!         hits: VoxelGrid::filled(&spec, 0),
-//!         crossings: VoxelGrid::filled(&spec, 3),
-//!         state: VoxelGrid::filled(&spec, 1),
-//!         instances: VoxelGrid::filled(&spec, 0),
-//!         flow: VoxelGrid::filled(&spec, [0.0; 3]),
-//!         camera_bits: VoxelGrid::filled(&spec, 0),
-//!     },
+//!     states: VoxelGrid::filled(&spec, VoxelState::Free),
+//!     evidence: None,
 //! };
 //!
 //! let folder = tempfile::tempdir().unwrap();

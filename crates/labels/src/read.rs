@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(read.mask_lidar, labels.mask_lidar);
         assert_eq!(read.mask_camera, labels.mask_camera);
 
-        let evidence = &labels.evidence;
+        let evidence = labels.evidence();
         let read = read_evidence(saved(&evidence_npz(evidence)).path(), &spec()).unwrap();
         assert_eq!(read.hits, evidence.hits);
         assert_eq!(read.crossings, evidence.crossings);

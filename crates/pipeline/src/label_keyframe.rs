@@ -7,7 +7,7 @@ use occlabel_core::{
     VoxelGrid, VoxelState, VoxelVote,
 };
 use occlabel_occlusion::{Eye, matter, visible};
-use occlabel_raycast::{classify, count};
+use occlabel_raycast::{Casting, Crossings, StateSettings, classify, count};
 use occlabel_voxelize::voxelize;
 
 use crate::Rules;
@@ -31,6 +31,32 @@ pub enum Stage {
     Finish,
 }
 
+/// What is wanted of a keyframe, and over how many threads.
+#[derive(Clone, Copy, Debug)]
+pub struct LabelOptions {
+    /// Whether the evidence is wanted too: full counts cost more than what decides the labels.
+    pub evidence: bool,
+    /// How many threads the rays are shared out over; does not show in the labels.
+    pub shards: usize,
+}
+
+impl LabelOptions {
+    /// The labels alone.
+    pub fn labels(shards: usize) -> Self {
+        Self { evidence: false, shards }
+    }
+
+    /// Labels with their evidence.
+    pub fn with_evidence(shards: usize) -> Self {
+        Self { evidence: true, shards }
+    }
+
+    fn casting(&self, states: &StateSettings) -> Casting {
+        let crossings = if self.evidence { Crossings::HowMany } else { states.crossings() };
+        Casting::new(crossings, self.shards)
+    }
+}
+
 /// A keyframe's labels, and what they cost.
 #[derive(Clone, Debug)]
 pub struct LabelledKeyframe {
@@ -40,16 +66,13 @@ pub struct LabelledKeyframe {
     pub rays: u64,
 }
 
-/// Labels a keyframe.
-///
-/// `shards` is how many threads the rays are shared out over; `enter` is told which stage begins.
-/// Neither shows in the labels.
+/// Labels a keyframe. `enter` is told which stage begins.
 pub fn label_keyframe(
     scene: &Scene,
     aggregated: &AggregatedScene<ClassId>,
     keyframe: &Keyframe,
     rules: &Rules,
-    shards: usize,
+    options: &LabelOptions,
     mut enter: impl FnMut(Stage),
 ) -> LabelledKeyframe {
     let (spec, ground) = (&rules.spec, &rules.taxonomy.flat);
@@ -67,7 +90,7 @@ pub fn label_keyframe(
     let votes = voxelize(&instant, spec, &rules.votes());
 
     enter(Stage::Raycast);
-    let counts = count(&instant, spec, &rules.rays(), shards);
+    let counts = count(&instant, spec, &rules.rays(), &options.casting(&rules.states));
     let states = classify(&counts, &votes, ground, &rules.states);
 
     enter(Stage::Occlusion);
@@ -76,8 +99,11 @@ pub fn label_keyframe(
 
     enter(Stage::Finish);
     let occupied = occupied_votes(&states, &votes);
-    let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
-    let labels = arrays(rules.taxonomy.free, &states, &occupied, &counts, camera_bits, flow);
+    let mut labels = arrays(rules.taxonomy.free, states, &occupied, &camera_bits);
+    labels.evidence = options.evidence.then(|| {
+        let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
+        evidence(&counts, &labels.states, &occupied, camera_bits, flow)
+    });
     LabelledKeyframe { labels, rays: instant.ray_count() }
 }
 
@@ -98,30 +124,39 @@ fn occupied_votes(
     states.zip_map(votes, |state, vote| vote.filter(|_| *state == VoxelState::Occupied))
 }
 
-/// The arrays of labels.md section 11.
+/// The arrays of labels.md section 11, but for the evidence.
 fn arrays(
     free: u8,
-    states: &VoxelGrid<VoxelState>,
+    states: VoxelGrid<VoxelState>,
     occupied: &VoxelGrid<Option<VoxelVote>>,
-    counts: &RayCounts,
-    camera_bits: VoxelGrid<u16>,
-    flow: VoxelGrid<[f32; 3]>,
+    camera_bits: &VoxelGrid<u16>,
 ) -> OccupancyLabels {
     let is_observed = |state: &VoxelState| u8::from(*state != VoxelState::Unobserved);
-    let saturate = |count: &u32| u16::try_from(*count).unwrap_or(u16::MAX);
-    let instance = |vote: &VoxelVote| vote.instance.map_or(0, |track| track.0);
     OccupancyLabels {
         semantics: occupied.map(|vote| vote.map_or(free, |vote| vote.class.0)),
         mask_lidar: states.map(is_observed),
         mask_camera: states
-            .zip_map(&camera_bits, |state, &bits| is_observed(state) & u8::from(bits != 0)),
-        evidence: Evidence {
-            hits: counts.hits.map(saturate),
-            crossings: counts.crossings.map(saturate),
-            state: states.map(|state| *state as u8),
-            instances: occupied.map(|vote| vote.as_ref().map_or(0, instance)),
-            flow,
-            camera_bits,
-        },
+            .zip_map(camera_bits, |state, &bits| is_observed(state) & u8::from(bits != 0)),
+        states,
+        evidence: None,
+    }
+}
+
+fn evidence(
+    counts: &RayCounts,
+    states: &VoxelGrid<VoxelState>,
+    occupied: &VoxelGrid<Option<VoxelVote>>,
+    camera_bits: VoxelGrid<u16>,
+    flow: VoxelGrid<[f32; 3]>,
+) -> Evidence {
+    let saturate = |count: &u32| u16::try_from(*count).unwrap_or(u16::MAX);
+    let instance = |vote: &VoxelVote| vote.instance.map_or(0, |track| track.0);
+    Evidence {
+        hits: counts.hits.map(saturate),
+        crossings: counts.crossings.map(saturate),
+        state: states.map(|state| *state as u8),
+        instances: occupied.map(|vote| vote.as_ref().map_or(0, instance)),
+        flow,
+        camera_bits,
     }
 }

@@ -33,7 +33,7 @@ struct Tally {
 
 impl Tally {
     fn record(&mut self, drive: &Drive, rules: &Rules, labels: &OccupancyLabels) {
-        let states = labels.evidence.state.values();
+        let states = labels.evidence().state.values();
         let count = |state: u8| states.iter().filter(|&&other| other == state).count();
         let aggregated = drive.aggregate(rules, |_| true);
         self.cases += 1;
@@ -41,8 +41,8 @@ impl Tally {
         self.occupied += count(OCCUPIED);
         self.free += count(FREE);
         self.unobserved += count(UNOBSERVED);
-        self.boxed += labels.evidence.instances.values().iter().filter(|id| **id > 0).count();
-        self.in_view += labels.evidence.camera_bits.values().iter().filter(|b| **b > 0).count();
+        self.boxed += labels.evidence().instances.values().iter().filter(|id| **id > 0).count();
+        self.in_view += labels.evidence().camera_bits.values().iter().filter(|b| **b > 0).count();
     }
 
     /// Asserts that so many cases were judged, which held, on average, more than 60 occupied voxels,
@@ -137,7 +137,7 @@ fn turned_left(drive: &Drive) -> Drive {
 
 /// Everything of a voxel but its flow.
 fn evidence_at(labels: &OccupancyLabels, at: [usize; 3]) -> [u16; 8] {
-    let evidence = &labels.evidence;
+    let evidence = labels.evidence();
     [
         *evidence.hits.at(at),
         *evidence.crossings.at(at),
@@ -173,7 +173,7 @@ fn the_worlds_own_frame_does_not_matter() {
             let moved = in_another_world(&drive, &here).label(&rules);
             for at in voxels() {
                 prop_assert_eq!(evidence_at(&labels, at), evidence_at(&moved, at), "{:?}", at);
-                let flows = [&labels, &moved].map(|labels| *labels.evidence.flow.at(at));
+                let flows = [&labels, &moved].map(|labels| *labels.evidence().flow.at(at));
                 prop_assert!(is_same_flow(flows[0], flows[1]), "{:?}: {:?}", at, flows);
             }
             tally.record(&drive, &rules, &labels);
@@ -196,7 +196,7 @@ fn a_shift_by_whole_voxels_shifts_the_grid() {
         let shift_m = Vector3::from(moved_by.map(|n| f64::from(n) * 0.5));
         let moved = past_the_ego(&drive, shift_m).label(&rules);
         let hits = |labels: &OccupancyLabels| -> u64 {
-            labels.evidence.hits.values().iter().map(|&hits| u64::from(hits)).sum()
+            labels.evidence().hits.values().iter().map(|&hits| u64::from(hits)).sum()
         };
         prop_assert_eq!(hits(&labels), hits(&moved), "nothing left the grid");
         for at in voxels() {
@@ -204,7 +204,7 @@ fn a_shift_by_whole_voxels_shifts_the_grid() {
             let to = to.map(|i| usize::try_from(i).unwrap_or(usize::MAX));
             if (0..3).all(|axis| to[axis] < SHAPE[axis]) {
                 prop_assert_eq!(evidence_at(&labels, at), evidence_at(&moved, to), "{:?}", at);
-                let flows = [labels.evidence.flow.at(at), moved.evidence.flow.at(to)];
+                let flows = [labels.evidence().flow.at(at), moved.evidence().flow.at(to)];
                 prop_assert!(is_same_flow(*flows[0], *flows[1]), "{:?}: {:?}", at, flows);
             }
         }
@@ -229,8 +229,8 @@ fn a_quarter_turn_permutes_the_grid() {
         for [x, y, z] in voxels() {
             let (at, to) = ([x, y, z], [SHAPE[0] - 1 - y, x, z]);
             prop_assert_eq!(evidence_at(&labels, at), evidence_at(&turned, to), "{:?}", at);
-            let [vx, vy, vz] = *labels.evidence.flow.at(at);
-            let flow = *turned.evidence.flow.at(to);
+            let [vx, vy, vz] = *labels.evidence().flow.at(at);
+            let flow = *turned.evidence().flow.at(to);
             prop_assert!(is_same_flow([-vy, vx, vz], flow), "{:?}: {:?}", at, flow);
         }
         tally.record(&drive, &rules, &labels);
@@ -352,7 +352,7 @@ fn section_9_another_sweep_never_gives_unobserved_back() {
         let rules = rules_with(&settings, &ONLY_MORE);
         let count = drive.clouds.len();
         let states_of = |sweeps: usize| {
-            drive.labels_of(&rules, |sweep| sweep < sweeps, 1).remove(0).evidence.state
+            drive.labels_of(&rules, |sweep| sweep < sweeps, 1).remove(0).evidence.unwrap().state
         };
         let mut before = states_of(0);
         for sweeps in 1..=count {
@@ -381,15 +381,15 @@ fn section_8_counts_of_two_halves_add_up_to_the_whole() {
             rules_with(&settings, &[&ONLY_MORE[..], &["relabel.unknown_class=taxonomy"]].concat());
         let in_half = |sweep: usize| half >> sweep & 1 == 1;
         let whole = drive.label(&rules);
-        let one = drive.labels_of(&rules, in_half, 1).remove(0).evidence;
-        let other = drive.labels_of(&rules, |sweep| !in_half(sweep), 1).remove(0).evidence;
+        let one = drive.labels_of(&rules, in_half, 1).remove(0).evidence.unwrap();
+        let other = drive.labels_of(&rules, |sweep| !in_half(sweep), 1).remove(0).evidence.unwrap();
         for at in voxels() {
             let [one, other] = [&one, &other].map(|e| [*e.hits.at(at), *e.crossings.at(at)]);
             let sum = [one[0] + other[0], one[1] + other[1]];
-            let whole = [*whole.evidence.hits.at(at), *whole.evidence.crossings.at(at)];
+            let whole = [*whole.evidence().hits.at(at), *whole.evidence().crossings.at(at)];
             prop_assert_eq!(whole, sum, "{:?}", at);
         }
-        prop_assert!(whole.evidence.instances.values().iter().all(|&id| id == 0));
+        prop_assert!(whole.evidence().instances.values().iter().all(|&id| id == 0));
         tally.record(&drive, &rules, &whole);
         Ok(())
     });
@@ -423,7 +423,7 @@ fn section_11_the_arrays_agree_with_each_other() {
             prop_assert!(hits > 0 || state != u16::from(OCCUPIED), "occupied by nothing");
             prop_assert!(crossings > 0 || state != u16::from(FREE), "free without a ray");
             prop_assert!(instance == 0 || state == u16::from(OCCUPIED), "a track in the air");
-            let flow = *labels.evidence.flow.at(at);
+            let flow = *labels.evidence().flow.at(at);
             prop_assert!(instance > 0 || flow == [0.0; 3], "{:?} without a track", flow);
             masked.borrow_mut()[usize::from(camera)] += usize::from(lidar);
         }

@@ -40,7 +40,7 @@ fn drive_of(sweeps: &[(f64, PointCloud<PointLabel>)]) -> Drive {
 /// The class of the voxel that holds a point, if it is occupied.
 fn class_of(labels: &OccupancyLabels, rules: &Rules, p: [f64; 3]) -> Option<ClassId> {
     let voxel = voxel_of(rules, p);
-    let is_occupied = *labels.evidence.state.at(voxel) == OCCUPIED;
+    let is_occupied = *labels.evidence().state.at(voxel) == OCCUPIED;
     is_occupied.then(|| ClassId(*labels.semantics.at(voxel)))
 }
 
@@ -108,7 +108,7 @@ fn section_5_the_class_of_a_neighbour_comes_from_any_sweep_and_never_from_a_trac
     let labels = drive.label(&rules);
     assert_eq!(class_of(&labels, &rules, HERE), Some(VEGETATION), "relabelling knows no window");
     assert_eq!(class_of(&labels, &rules, near_box), Some(OTHERS), "a car's point is no candidate");
-    let hits: u32 = labels.evidence.hits.values().iter().map(|&hits| u32::from(hits)).sum();
+    let hits: u32 = labels.evidence().hits.values().iter().map(|&hits| u32::from(hits)).sum();
     assert_eq!(hits, 2, "the window keeps the sweep that told it out of the grid");
 }
 
@@ -161,8 +161,8 @@ fn section_6_a_track_is_placed_by_its_box_of_the_keyframe_unscaled() {
     let labels = drive.label(&rules);
     let place = [HERE[0] + 0.9, HERE[1], HERE[2]];
     assert_eq!(class_of(&labels, &rules, place), Some(CAR));
-    assert_eq!(labels.evidence.hits.values().iter().map(|&hits| u32::from(hits)).sum::<u32>(), 1);
-    assert_eq!(*labels.evidence.instances.at(voxel_of(&rules, place)), 1);
+    assert_eq!(labels.evidence().hits.values().iter().map(|&hits| u32::from(hits)).sum::<u32>(), 1);
+    assert_eq!(*labels.evidence().instances.at(voxel_of(&rules, place)), 1);
 }
 
 #[test]
@@ -185,8 +185,8 @@ fn section_6_a_track_without_a_box_then_is_left_out_of_classes_and_hits() {
     let mut drive = drive_of(&[(0.0, seen(&[])), (0.5, seen(&[(HERE, labelled(CAR))]))]);
     drive.scene.tracks = vec![track(1, CAR, vec![(at(0.3), box_at(HERE, 0.0))])];
     let labels = drive.label(&small(&[]));
-    assert!(labels.evidence.hits.values().iter().all(|&hits| hits == 0), "extrapolated only");
-    let crossed = labels.evidence.crossings.values().iter().filter(|&&n| n > 0).count();
+    assert!(labels.evidence().hits.values().iter().all(|&hits| hits == 0), "extrapolated only");
+    let crossed = labels.evidence().crossings.values().iter().filter(|&&n| n > 0).count();
     assert_eq!(crossed, 9, "its world part stays: 8 faces along x and one along y");
 }
 
@@ -212,7 +212,7 @@ fn section_8_the_ray_of_a_tracks_point_stays_where_it_was_seen_up_to_the_box() {
 /// The voxels that were hit, and those that were crossed, each once.
 fn hit_and_crossed(drive: &Drive, object_rays: &str) -> [Vec<[usize; 3]>; 2] {
     let rules = small(&[&format!("raycast.object_rays={object_rays}")]);
-    let evidence = drive.label(&rules).evidence;
+    let evidence = drive.label(&rules).evidence.unwrap();
     [&evidence.hits, &evidence.crossings].map(|counts| {
         let once = rules.spec.voxels().zip(counts.values()).filter(|(_, count)| **count > 0);
         once.map(|(voxel, count)| {
@@ -243,15 +243,15 @@ fn flow_of(
     let labels = drive.label(&rules);
     let of_track = rules.spec.voxels().map(|voxel| (voxel, voxel.0.map(|i| i as usize)));
     let (boxed, other): (Vec<_>, Vec<_>) =
-        of_track.partition(|(_, at)| *labels.evidence.instances.at(*at) == 1);
+        of_track.partition(|(_, at)| *labels.evidence().instances.at(*at) == 1);
     assert!(boxed.len() > 5, "{} voxels of the track", boxed.len());
     assert!(
-        other.iter().all(|(_, at)| *labels.evidence.flow.at(*at) == [0.0; 3]),
+        other.iter().all(|(_, at)| *labels.evidence().flow.at(*at) == [0.0; 3]),
         "background, air"
     );
     boxed
         .into_iter()
-        .map(|(voxel, at)| (rules.spec.centre(voxel).coords.into(), *labels.evidence.flow.at(at)))
+        .map(|(voxel, at)| (rules.spec.centre(voxel).coords.into(), *labels.evidence().flow.at(at)))
         .collect()
 }
 
@@ -311,8 +311,8 @@ fn section_11_flow_leaves_out_what_the_ego_does() {
     drive.scene.tracks = vec![track(1, CAR, vec![(at(0.0), boxed.clone()), (at(0.5), boxed)])];
     let rules = small(&[]);
     let labels = drive.label(&rules);
-    assert_eq!(*labels.evidence.instances.at(voxel_of(&rules, HERE)), 1);
-    assert_velocity(*labels.evidence.flow.at(voxel_of(&rules, HERE)), [0.0; 3]);
+    assert_eq!(*labels.evidence().instances.at(voxel_of(&rules, HERE)), 1);
+    assert_velocity(*labels.evidence().flow.at(voxel_of(&rules, HERE)), [0.0; 3]);
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn section_11_semantics_is_free_wherever_nothing_is_occupied() {
     let drive = drive_of(&[(0.0, seen(&[(HERE, labelled(CAR)), (THERE, labelled(ROAD))]))]);
     for (taxonomy, free) in [("occ3d-nuscenes", FREE_ID), ("occ3d-waymo", 23), ("mobileocc", 255)] {
         let labels = drive.label(&small(&[&format!("taxonomy.file={taxonomy}")]));
-        let states = labels.evidence.state.values();
+        let states = labels.evidence().state.values();
         let written = labels.semantics.values().iter().zip(labels.mask_lidar.values());
         let mut counts = [0; 3];
         for (&state, (&class, &is_observed)) in states.iter().zip(written) {
@@ -337,7 +337,7 @@ fn section_11_semantics_is_free_wherever_nothing_is_occupied() {
 fn section_11_counts_saturate_where_they_are_written_and_not_before() {
     let points = vec![(HERE, labelled(MANMADE)); 70_000];
     let count_at = |labels: &OccupancyLabels, rules: &Rules| {
-        let evidence = &labels.evidence;
+        let evidence = labels.evidence();
         let before = [HERE[0] - 0.5, HERE[1], HERE[2]];
         let (hit, crossed) = (voxel_of(rules, HERE), voxel_of(rules, before));
         [
@@ -379,10 +379,14 @@ fn section_13_the_grid_stands_in_the_ego_or_in_the_lidar_pitch_included() {
         let rules = small(&[&format!("grid.frame={frame}")]);
         let labels = drive.label(&rules);
         assert_eq!(class_of(&labels, &rules, expected), Some(MANMADE), "{frame}: {expected:?}");
-        let occupied = labels.evidence.state.values().iter().filter(|s| **s == OCCUPIED).count();
+        let occupied = labels.evidence().state.values().iter().filter(|s| **s == OCCUPIED).count();
         assert_eq!(occupied, 1, "{frame}");
         let origin = if frame == "ego" { [0.5, 0.1, 0.4] } else { [0.0; 3] };
-        assert_eq!(*labels.evidence.crossings.at(voxel_of(&rules, origin)), 1, "the ray's origin");
+        assert_eq!(
+            *labels.evidence().crossings.at(voxel_of(&rules, origin)),
+            1,
+            "the ray's origin"
+        );
     }
     let voxels = [p_ego, [5.0, 0.6, 0.3]].map(|p| voxel_of(&small(&[]), p));
     assert_ne!(voxels[0], voxels[1], "the frames are told apart");

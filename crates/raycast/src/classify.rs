@@ -3,6 +3,8 @@
 use occlabel_core::{ClassSet, RayCounts, VoxelGrid, VoxelState, VoxelVote};
 use serde::{Deserialize, Serialize};
 
+use crate::Crossings;
+
 /// The `[states]` table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -15,6 +17,16 @@ pub struct StateSettings {
     pub conflict: Conflict,
     /// Under `ratio`: the least share of hits in hits and crossings that an occupied voxel needs.
     pub min_hit_ratio: f64,
+}
+
+impl StateSettings {
+    /// What must be kept of the crossings to judge by these settings.
+    pub fn crossings(&self) -> Crossings {
+        match self.conflict {
+            Conflict::OccupiedWins if self.free_min_crossings <= 1 => Crossings::Whether,
+            _ => Crossings::HowMany,
+        }
+    }
 }
 
 /// What to believe where a voxel was both hit and crossed.

@@ -8,7 +8,8 @@ use occlabel_core::{
 };
 use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use occlabel_pipeline::{
-    Autos, Config, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset, shipped_taxonomy,
+    Autos, Config, LabelOptions, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset,
+    shipped_taxonomy,
 };
 use occlabel_simulate::{Drive, Images, Output, Return, World, render, write_nuscenes};
 use tempfile::TempDir;
@@ -223,7 +224,15 @@ fn labels(
 ) -> OccupancyLabels {
     let read = |header: &_| Ok::<_, Fault>(Some(points(header)));
     let aggregated = aggregate_scene(scene, rules, read, |_| ()).unwrap();
-    label_keyframe(scene, &aggregated, &scene.keyframes[1], rules, 1, |_| ()).labels
+    label_keyframe(
+        scene,
+        &aggregated,
+        &scene.keyframes[1],
+        rules,
+        &LabelOptions::with_evidence(1),
+        |_| (),
+    )
+    .labels
 }
 
 #[test]
@@ -239,7 +248,7 @@ fn labels_of_the_log_are_those_of_the_drive() {
     assert!(from_log.semantics == in_memory.semantics);
     assert!(from_log.mask_lidar == in_memory.mask_lidar);
     assert!(from_log.mask_camera == in_memory.mask_camera);
-    assert!(from_log.evidence.instances == in_memory.evidence.instances);
+    assert!(from_log.evidence().instances == in_memory.evidence().instances);
 }
 
 /// Every file below a folder with its bytes.

@@ -3,7 +3,8 @@
 use std::cmp::Reverse;
 
 use occlabel_core::{
-    ClassId, ClassSet, GridSpec, Instant, PlacedObject, RigidMap, TrackId, VoxelGrid, VoxelVote,
+    BUNDLE, BackgroundSweep, ClassId, ClassSet, GridSpec, Instant, Kernel, Level, PlacedObject,
+    RigidMap, TrackId, VoxelGrid, VoxelVote,
 };
 use serde::{Deserialize, Serialize};
 
@@ -59,11 +60,37 @@ pub fn voxelize(
 }
 
 fn cast_background(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
-    let grid_from_world = RigidMap::from(&instant.grid_from_world);
+    let place = RigidMap::from(&instant.grid_from_world);
     for sweep in &instant.background {
-        for (position, class) in sweep.cloud.positions.iter().zip(&sweep.cloud.labels) {
-            if let Some(flat) = spec.flat_of(&grid_from_world.apply(position)) {
-                ballots.cast(flat, *class);
+        Level::best().run(CastSweep { sweep, place: &place, spec, ballots });
+    }
+}
+
+/// Casts the votes of a sweep, a bundle at a time.
+struct CastSweep<'a> {
+    sweep: &'a BackgroundSweep<ClassId>,
+    place: &'a RigidMap,
+    spec: &'a GridSpec,
+    ballots: &'a mut BallotBox,
+}
+
+impl Kernel for CastSweep<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let cloud = &self.sweep.cloud;
+        let bundles = cloud.positions.chunks(BUNDLE).zip(cloud.labels.chunks(BUNDLE));
+        for (number, (positions, labels)) in bundles.enumerate() {
+            let reach = self.sweep.bundles.reach(number * BUNDLE, self.spec, self.place);
+            if !reach.meets(self.spec) {
+                continue;
+            }
+            let flats = self.spec.flats_of(self.place, positions);
+            for (flat, class) in flats.into_iter().zip(labels) {
+                if let Some(flat) = flat {
+                    self.ballots.cast(flat, *class);
+                }
             }
         }
     }

@@ -7,7 +7,7 @@ use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, 
 use occlabel_labels::{
     FileRecord, Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz,
 };
-use occlabel_pipeline::{aggregate_scene, label_keyframe};
+use occlabel_pipeline::{LabelOptions, aggregate_scene, label_keyframe};
 use serde_json::Value;
 
 use crate::exit::Stop;
@@ -138,8 +138,9 @@ impl SceneRun<'_> {
     fn finish(&self, keyframe: &Keyframe, bench: &Bench) -> Result<(), Fault> {
         let (mut clock, (_, shards)) = (StageClock::start(), self.planned.at_once);
         let rules = &self.job.opened.rules;
+        let options = LabelOptions { evidence: self.job.args.evidence, shards };
         let labelled =
-            label_keyframe(bench.scene, bench.aggregated, keyframe, rules, shards, |stage| {
+            label_keyframe(bench.scene, bench.aggregated, keyframe, rules, &options, |stage| {
                 clock.enter(stage);
             });
         let entry = JournalEntry {
@@ -164,8 +165,8 @@ impl SceneRun<'_> {
     ) -> Result<Vec<FileRecord>, Fault> {
         let (tree, scene, token) = (&self.job.tree, &self.planned.name, &keyframe.token);
         let mut files = Vec::new();
-        if self.job.args.evidence {
-            let bytes = evidence_npz(&labels.evidence);
+        if let Some(evidence) = &labels.evidence {
+            let bytes = evidence_npz(evidence);
             files.push(tree.write(&TreePath::evidence(scene, token)?, &bytes)?);
         }
         files.push(tree.write(&TreePath::labels(scene, token)?, &labels_npz(labels))?);

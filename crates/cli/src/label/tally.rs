@@ -55,8 +55,8 @@ pub(crate) struct Tally {
 
 impl VoxelCounts {
     pub(crate) fn of(labels: &OccupancyLabels) -> Self {
-        let states = labels.evidence.state.values();
-        let count = |state| states.iter().filter(|value| **value == state as u8).count() as u64;
+        let states = labels.states.values();
+        let count = |state| states.iter().filter(|value| **value == state).count() as u64;
         Self {
             occupied: count(VoxelState::Occupied),
             free: count(VoxelState::Free),

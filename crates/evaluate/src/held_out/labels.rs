@@ -22,14 +22,10 @@ impl Verdict {
 
     /// What the labels of a keyframe say of each voxel.
     pub fn of_labels(labels: &OccupancyLabels) -> VoxelGrid<Self> {
-        labels.evidence.state.zip_map(&labels.semantics, |&state, &class| {
-            if state == VoxelState::Occupied as u8 {
-                Self::Occupied(ClassId(class))
-            } else if state == VoxelState::Free as u8 {
-                Self::Free
-            } else {
-                Self::Unobserved
-            }
+        labels.states.zip_map(&labels.semantics, |state, &class| match state {
+            VoxelState::Occupied => Self::Occupied(ClassId(class)),
+            VoxelState::Free => Self::Free,
+            VoxelState::Unobserved => Self::Unobserved,
         })
     }
 }

@@ -78,7 +78,7 @@ fn moving_car_is_sharp(stage: &Stage) -> OccupancyLabels {
     );
     let inside = interior(stage, &rules);
     let crossed = |labels: &OccupancyLabels| {
-        inside.iter().filter(|&&voxel| *labels.evidence.state.at(voxel) != UNOBSERVED).count()
+        inside.iter().filter(|&&voxel| *labels.evidence().state.at(voxel) != UNOBSERVED).count()
     };
     assert_eq!(crossed(&labels), 0, "nobody looked into the car");
     let other_air = drive.label(&small(&["raycast.same_time_s=10"]));
@@ -127,19 +127,19 @@ fn a_parked_car_is_a_car_of_speed_zero() {
     let parked = annotated_at(&ANNOTATED_S);
     same_but_flow(&annotated_at(&SWEEPS_S), &parked, "annotated in every sweep");
     let is_still = |v: &[f32; 3]| v.iter().all(|c| c.abs() < 1e-6);
-    assert!(parked.evidence.flow.values().iter().all(is_still));
+    assert!(parked.evidence().flow.values().iter().all(is_still));
 
     let lone = annotated_at(&[0.0]);
     same_but_flow(&lone, &parked, "one annotation is held still");
-    assert!(lone.evidence.flow.values().iter().any(|v| v[0].is_nan()), "but tells no velocity");
+    assert!(lone.evidence().flow.values().iter().any(|v| v[0].is_nan()), "but tells no velocity");
 
     let any_time = small(&["raycast.same_time_s=10"]);
     let house = drive_annotated_at(&[]).label(&any_time);
     let parked_any_time = drive_annotated_at(&[&ANNOTATED_S]).label(&any_time);
-    assert!(house.evidence.hits == parked.evidence.hits, "hits, as if it were a house");
+    assert!(house.evidence().hits == parked.evidence().hits, "hits, as if it were a house");
     assert!(house.semantics == parked.semantics, "classes, as if it were a house");
     assert!(
-        house.evidence.state == parked_any_time.evidence.state,
+        house.evidence().state == parked_any_time.evidence().state,
         "states, as if it were a house"
     );
     let shape = instances_above_ground(&parked, 1).len();

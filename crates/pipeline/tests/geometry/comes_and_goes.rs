@@ -67,7 +67,7 @@ fn smears_where_it_was(stage: &Stage, labels: &OccupancyLabels, absent_s: &[f64]
     let mut smears = vec![0; was.len()];
     for (voxel, body) in stage.voxels(&small(&[]), 0.0) {
         let is_car = *labels.semantics.at(voxel) == CAR.0;
-        if is_car && *labels.evidence.instances.at(voxel) == 0 {
+        if is_car && *labels.evidence().instances.at(voxel) == 0 {
             let held: Vec<bool> = was.iter().map(|was| overlap(&body, &was.grown(0.001))).collect();
             assert!(held.contains(&true), "{voxel:?} is a trail");
             smears.iter_mut().zip(held).for_each(|(count, held)| *count += usize::from(held));

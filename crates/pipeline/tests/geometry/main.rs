@@ -52,5 +52,5 @@ fn voxels_above_ground() -> impl Iterator<Item = (usize, usize, usize)> {
 
 fn instances_above_ground(labels: &OccupancyLabels, track: u16) -> BTreeSet<[usize; 3]> {
     let all = voxels_above_ground().map(|(x, y, z)| [x, y, z]);
-    all.filter(|&voxel| *labels.evidence.instances.at(voxel) == track).collect()
+    all.filter(|&voxel| *labels.evidence().instances.at(voxel) == track).collect()
 }

@@ -28,7 +28,7 @@ fn section_4_of_two_overlapping_boxes_the_smaller_takes_the_points() {
     let labels = stage.drive(&[0.0]).label(&rules);
 
     instances_are_the_owners(&labels, &owners_of_voxels(&stage, &boxes, &rules));
-    let instance = |voxel| match *labels.evidence.instances.at(voxel) {
+    let instance = |voxel| match *labels.evidence().instances.at(voxel) {
         0 => class_at(&labels, voxel),
         track => char::from(b'0' + track as u8),
     };
@@ -46,7 +46,7 @@ fn instances_are_the_owners(
     let mut judged = [0; 5];
     for (voxel, owners) in owners.iter().filter(|(_, owners)| owners.len() == 1) {
         let owner = *owners.first().expect("one owner");
-        assert_eq!(*labels.evidence.instances.at(*voxel), owner, "{voxel:?}");
+        assert_eq!(*labels.evidence().instances.at(*voxel), owner, "{voxel:?}");
         judged[usize::from(owner)] += 1;
     }
     assert!(

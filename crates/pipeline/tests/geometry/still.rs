@@ -34,7 +34,7 @@ fn shadow_is_the_wedge(labels: &OccupancyLabels, is_dark: impl Fn([f64; 2]) -> b
     let (mut within, mut without) = (0, 0);
     for (x, y, z) in voxels_above_ground() {
         let dark = corners_xy(x, y).into_iter().filter(|&corner| is_dark(corner)).count();
-        let state = *labels.evidence.state.at([x, y, z]);
+        let state = *labels.evidence().state.at([x, y, z]);
         assert!(dark < 4 || state == UNOBSERVED, "{:?} is dark, found {state}", [x, y, z]);
         assert!(dark > 0 || state != UNOBSERVED, "{:?} is lit", [x, y, z]);
         within += usize::from(dark == 4);
@@ -65,7 +65,7 @@ fn a_pillar_throws_a_wedge_and_of_two_the_common_part_stays_dark() {
     let (one, two) = (seen_from(&[0.0]), seen_from(&[0.0, 0.5]));
     let wedge = |labels: &OccupancyLabels| {
         voxels_above_ground()
-            .filter(|&(x, y, z)| *labels.evidence.state.at([x, y, z]) == UNOBSERVED)
+            .filter(|&(x, y, z)| *labels.evidence().state.at([x, y, z]) == UNOBSERVED)
             .count()
     };
     assert!(wedge(&two) < wedge(&one) / 2 && wedge(&two) > 0, "{} of {}", wedge(&two), wedge(&one));

@@ -8,7 +8,7 @@ use occlabel_core::{
     AggregatedScene, Box3, BoxTrack, ClassId, Exposure, Keyframe, Meaning, NamedCamera,
     OccupancyLabels, PointCloud, PointLabel, Pose, Scene, SweepHeader, Timestamp, TrackId,
 };
-use occlabel_pipeline::{Rules, aggregate_scene, label_keyframe};
+use occlabel_pipeline::{LabelOptions, Rules, aggregate_scene, label_keyframe};
 
 /// A scene with what its reader would deliver.
 #[derive(Clone, Debug, Default)]
@@ -69,9 +69,10 @@ impl Drive {
         shards: usize,
     ) -> Vec<OccupancyLabels> {
         let aggregated = self.aggregate(rules, is_read);
+        let options = LabelOptions::with_evidence(shards);
         let keyframes = self.scene.keyframes.iter();
         keyframes
-            .map(|k| label_keyframe(&self.scene, &aggregated, k, rules, shards, |_| ()).labels)
+            .map(|k| label_keyframe(&self.scene, &aggregated, k, rules, &options, |_| ()).labels)
             .collect()
     }
 }
@@ -133,7 +134,7 @@ pub(crate) fn looking_ahead(frame: &Pose) -> Pose {
 #[track_caller]
 pub(crate) fn same_arrays(a: &OccupancyLabels, b: &OccupancyLabels, what: &str) {
     same_but_flow(a, b, what);
-    let bits = |labels: &OccupancyLabels| labels.evidence.flow.map(|v| v.map(f32::to_bits));
+    let bits = |labels: &OccupancyLabels| labels.evidence().flow.map(|v| v.map(f32::to_bits));
     assert!(bits(a) == bits(b), "flow: {what}");
 }
 
@@ -143,9 +144,9 @@ pub(crate) fn same_but_flow(a: &OccupancyLabels, b: &OccupancyLabels, what: &str
     assert!(a.semantics == b.semantics, "semantics: {what}");
     assert!(a.mask_lidar == b.mask_lidar, "mask_lidar: {what}");
     assert!(a.mask_camera == b.mask_camera, "mask_camera: {what}");
-    assert!(a.evidence.hits == b.evidence.hits, "hits: {what}");
-    assert!(a.evidence.crossings == b.evidence.crossings, "crossings: {what}");
-    assert!(a.evidence.state == b.evidence.state, "state: {what}");
-    assert!(a.evidence.instances == b.evidence.instances, "instances: {what}");
-    assert!(a.evidence.camera_bits == b.evidence.camera_bits, "camera_bits: {what}");
+    assert!(a.evidence().hits == b.evidence().hits, "hits: {what}");
+    assert!(a.evidence().crossings == b.evidence().crossings, "crossings: {what}");
+    assert!(a.evidence().state == b.evidence().state, "state: {what}");
+    assert!(a.evidence().instances == b.evidence().instances, "instances: {what}");
+    assert!(a.evidence().camera_bits == b.evidence().camera_bits, "camera_bits: {what}");
 }

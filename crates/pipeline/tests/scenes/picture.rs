@@ -15,7 +15,7 @@ const CLASSES: &[u8; 17] = b"o***c**p***=**-#%";
 
 /// State and class of a voxel.
 pub(crate) fn class_at(labels: &OccupancyLabels, voxel: [usize; 3]) -> char {
-    match *labels.evidence.state.at(voxel) {
+    match *labels.evidence().state.at(voxel) {
         OCCUPIED => char::from(CLASSES[usize::from(*labels.semantics.at(voxel))]),
         FREE => '.',
         _ => '?',

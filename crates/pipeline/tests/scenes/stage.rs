@@ -81,14 +81,14 @@ impl Stage<'_> {
             .collect();
         let mut counts = [0; 3];
         for (voxel, body) in self.voxels(rules, 0.0) {
-            let state = *labels.evidence.state.at(voxel);
+            let state = *labels.evidence().state.at(voxel);
             let samples = samples(&body);
             let sees =
                 |world: &[Body], eye| samples.iter().filter(|p| is_lit(world, eye, p)).count();
             if eyes.iter().all(|eye| sees(&smaller, eye) == 0) {
                 counts[0] += 1;
                 assert_eq!(state, UNOBSERVED, "{voxel:?} is dark");
-                assert_eq!(*labels.evidence.crossings.at(voxel), 0, "{voxel:?} is dark");
+                assert_eq!(*labels.evidence().crossings.at(voxel), 0, "{voxel:?} is dark");
             }
             if eyes.iter().any(|eye| sees(&world, eye) == samples.len()) {
                 counts[1] += 1;
@@ -117,7 +117,7 @@ impl Stage<'_> {
         let world = (self.world)(keyframe_s);
         let mut occupied = 0;
         for (voxel, body) in self.voxels(rules, keyframe_s) {
-            if *labels.evidence.state.at(voxel) == OCCUPIED {
+            if *labels.evidence().state.at(voxel) == OCCUPIED {
                 let class = *labels.semantics.at(voxel);
                 let holds =
                     |other: &&Body| other.class.0 == class && overlap(&body, &other.grown(0.001));
@@ -146,7 +146,7 @@ impl Stage<'_> {
         let voxels = self.voxels(rules, keyframe_s).into_iter();
         voxels
             .filter(|(voxel, body)| {
-                *labels.evidence.state.at(*voxel) == FREE && is_on_the_way(body)
+                *labels.evidence().state.at(*voxel) == FREE && is_on_the_way(body)
             })
             .count()
     }
