@@ -26,9 +26,15 @@
 //! assert_eq!(source, BoxSource::Interpolated);
 //! ```
 
+mod ballot;
+mod bounds;
 mod box_at;
-mod knn;
+mod groups;
+mod labelled_tree;
+mod poll;
 mod relabel;
+mod unlabelled;
+mod vote;
 
 pub use box_at::{BoxSettings, BoxSource, box_at};
 pub use relabel::{GhostClasses, RelabelSettings, relabel};

@@ -1,11 +1,13 @@
 //! Labels for unlabelled background (labels.md section 5).
 
-use nalgebra::Point3;
 use occlabel_core::{AggregatedScene, BackgroundSweep, ClassId, ClassSet, DropCounts, Taxonomy};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::knn::{KdTree, Labelled, Neighbour};
+use crate::ballot::{Ballot, GROUP};
+use crate::groups::for_each_group;
+use crate::labelled_tree::{Labelled, LabelledTree};
+use crate::unlabelled::{Unlabelled, Verdict};
 
 /// How unlabelled background points get a class.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,16 +50,14 @@ impl GhostClasses {
 ///
 /// A point votes with its nearest labelled neighbours of the whole scene, ordered by
 /// (distance, class id); on equal votes the tied class that comes first in that order wins.
-/// Parallel over sweeps; the order of threads does not show.
+/// Parallel over groups of neighbouring points; the order of threads does not show.
 pub fn relabel(
     scene: AggregatedScene<Option<ClassId>>,
     settings: &RelabelSettings,
 ) -> AggregatedScene<ClassId> {
-    let tree = KdTree::new(labelled_points(&scene));
-    let relabelled: Vec<_> = scene
-        .background
-        .into_par_iter()
-        .map(|sweep| relabel_sweep(sweep, &tree, settings))
+    let verdicts = verdicts(&scene.background, settings);
+    let relabelled: Vec<_> = (scene.background.into_par_iter().zip(verdicts))
+        .map(|(sweep, verdicts)| relabel_sweep(sweep, &verdicts, settings))
         .collect();
     let mut dropped = scene.dropped;
     let mut background = Vec::with_capacity(relabelled.len());
@@ -68,79 +68,64 @@ pub fn relabel(
     AggregatedScene { background, objects: scene.objects, dropped }
 }
 
-fn labelled_points(scene: &AggregatedScene<Option<ClassId>>) -> Vec<Labelled> {
-    let clouds = scene.background.iter().map(|sweep| &sweep.cloud);
-    clouds
-        .flat_map(|cloud| cloud.positions.iter().zip(&cloud.labels))
-        .filter_map(|(position, label)| Some((*position, (*label)?)))
-        .collect()
+/// What the vote gives each unlabelled point: a list a sweep, a verdict a point.
+fn verdicts(
+    sweeps: &[BackgroundSweep<Option<ClassId>>],
+    settings: &RelabelSettings,
+) -> Vec<Vec<Verdict>> {
+    let verdicts: Vec<Vec<Verdict>> = (sweeps.par_iter())
+        .map(|sweep| sweep.cloud.labels.iter().map(|_| Verdict::default()).collect())
+        .collect();
+    if sweeps.iter().any(|sweep| sweep.cloud.labels.contains(&None)) {
+        let tree = LabelledTree::new(labelled_points(sweeps), settings.k);
+        for round in Unlabelled::new(sweeps, &verdicts).rounds() {
+            let reach_m = settings.max_distance_m.unwrap_or(f64::INFINITY);
+            let (k, reach_squared) = (settings.k, reach_m * reach_m);
+            let ballot = Ballot { tree: &tree, k, reach_squared, round: &round };
+            let position = |number: u32| round.position(number);
+            for_each_group(&mut round.items(), GROUP, &position, &|group| ballot.hold(group));
+        }
+    }
+    verdicts
+}
+
+fn labelled_points(sweeps: &[BackgroundSweep<Option<ClassId>>]) -> Vec<Labelled> {
+    let points = || {
+        let clouds = sweeps.iter().map(|sweep| &sweep.cloud);
+        let points = clouds.flat_map(|cloud| cloud.positions.iter().zip(&cloud.labels));
+        points.filter_map(|(position, label)| Some((*position, (*label)?)))
+    };
+    let mut labelled = Vec::with_capacity(points().count());
+    labelled.extend(points());
+    labelled
 }
 
 fn relabel_sweep(
     sweep: BackgroundSweep<Option<ClassId>>,
-    tree: &KdTree,
+    verdicts: &[Verdict],
     settings: &RelabelSettings,
 ) -> (BackgroundSweep<ClassId>, DropCounts) {
     let mut drops = DropCounts::default();
-    let classes = classify_points(&sweep, tree, settings);
-    let cloud = sweep.cloud.filter_map(|i, _| match classes[i] {
-        None => {
-            drops.unknown += 1;
-            None
+    let cloud = sweep.cloud.filter_map(|i, label| {
+        match label.or_else(|| verdicts[i].class()).or(settings.unknown) {
+            None => {
+                drops.unknown += 1;
+                None
+            }
+            Some(class) if settings.ghosts.contains(class) => {
+                drops.ghost += 1;
+                None
+            }
+            class => class,
         }
-        Some(class) if settings.ghosts.contains(class) => {
-            drops.ghost += 1;
-            None
-        }
-        class => class,
     });
     (BackgroundSweep::new(sweep.time, cloud), drops)
-}
-
-/// Points to a parallel task: enough to repay its start.
-const POINTS_A_TASK: usize = 4096;
-
-fn classify_points(
-    sweep: &BackgroundSweep<Option<ClassId>>,
-    tree: &KdTree,
-    settings: &RelabelSettings,
-) -> Vec<Option<ClassId>> {
-    let cloud = &sweep.cloud;
-    (cloud.positions.par_iter().zip(&cloud.labels))
-        .with_min_len(POINTS_A_TASK)
-        .map_init(Vec::new, |found, (position, label)| {
-            label.or_else(|| vote(position, tree, settings, found))
-        })
-        .collect()
-}
-
-fn vote(
-    p: &Point3<f64>,
-    tree: &KdTree,
-    settings: &RelabelSettings,
-    found: &mut Vec<Neighbour>,
-) -> Option<ClassId> {
-    let reach = settings.max_distance_m.unwrap_or(f64::INFINITY);
-    tree.nearest(p, settings.k, reach * reach, found);
-    first_most_frequent(found).or(settings.unknown)
-}
-
-/// The class with most neighbours; of several, the one that comes first.
-fn first_most_frequent(neighbours: &[Neighbour]) -> Option<ClassId> {
-    let votes = |class: ClassId| neighbours.iter().filter(|other| other.1 == class).count();
-    let mut winner: Option<(usize, ClassId)> = None;
-    for &(_, class) in neighbours {
-        let count = votes(class);
-        if winner.is_none_or(|(most, _)| count > most) {
-            winner = Some((count, class));
-        }
-    }
-    winner.map(|(_, class)| class)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point3;
     use occlabel_core::{PointCloud, Timestamp};
 
     const A: ClassId = ClassId(3);
