@@ -13,7 +13,8 @@ use occlabel_core::{Keyframe, VoxelGrid};
 use occlabel_evaluate::{JudgedLabels, KnownWorld, Scale, Tally, judge};
 use occlabel_occlusion::Eye;
 use occlabel_pipeline::{
-    Autos, Config, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset, shipped_taxonomy,
+    Autos, Config, Lenses, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset,
+    shipped_taxonomy,
 };
 use occlabel_simulate::{
     Drive, TrueRays, TruthAt, TruthSettings, World, dense_ends, keyframe_truth, shipped_world,
@@ -78,7 +79,9 @@ fn label_and_judge(drive: &Drive, rays: &TrueRays, rules: &Rules, every: usize) 
     let dense = dense_ends(drive, &frames, &settings);
     let one = |(at, dense): (&TruthAt, VoxelGrid<u32>)| {
         let truth = keyframe_truth(drive, rays, at, &settings, Some(&dense));
-        let labels = label_keyframe(scene, &aggregated, at.keyframe, rules, 2, |_| {}).labels;
+        let labels =
+            label_keyframe(scene, &aggregated, &Lenses::default(), at.keyframe, rules, 2, |_| {})
+                .labels;
         let judged = JudgedLabels {
             semantics: &labels.semantics,
             mask_lidar: &labels.mask_lidar,

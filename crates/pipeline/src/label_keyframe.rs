@@ -6,7 +6,7 @@ use occlabel_core::{
     AggregatedScene, ClassId, Evidence, Keyframe, OccupancyLabels, Pose, RayCounts, Scene,
     VoxelGrid, VoxelState, VoxelVote,
 };
-use occlabel_occlusion::{Eye, matter, visible};
+use occlabel_occlusion::{Eye, Lenses, matter, visible};
 use occlabel_raycast::{classify, count};
 use occlabel_voxelize::voxelize;
 
@@ -42,11 +42,12 @@ pub struct LabelledKeyframe {
 
 /// Labels a keyframe.
 ///
-/// `shards` is how many threads the rays are shared out over; `enter` is told which stage begins.
-/// Neither shows in the labels.
+/// `lenses` are those of the scene, the same for all its keyframes. `shards` is how many threads the rays are shared out over; `enter` is told which stage begins.
+/// None of them shows in the labels.
 pub fn label_keyframe(
     scene: &Scene,
     aggregated: &AggregatedScene<ClassId>,
+    lenses: &Lenses,
     keyframe: &Keyframe,
     rules: &Rules,
     shards: usize,
@@ -72,7 +73,8 @@ pub fn label_keyframe(
 
     enter(Stage::Occlusion);
     let eyes = open_eyes(scene, keyframe, &grid_from_world);
-    let camera_bits = visible(&eyes, spec, &matter(&states, &votes, ground), &rules.occlusion);
+    let matter = matter(&states, &votes, ground);
+    let camera_bits = visible(&eyes, lenses, spec, &matter, &rules.occlusion);
 
     enter(Stage::Finish);
     let occupied = occupied_votes(&states, &votes);

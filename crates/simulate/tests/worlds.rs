@@ -3,7 +3,8 @@
 use nalgebra::{Point3, Vector3};
 use occlabel_core::{Fault, PointLabel, Taxonomy, Timestamp};
 use occlabel_pipeline::{
-    Autos, Config, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset, shipped_taxonomy,
+    Autos, Config, Lenses, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset,
+    shipped_taxonomy,
 };
 use occlabel_simulate::{Drive, Ray, What, World};
 
@@ -238,7 +239,8 @@ fn a_labelled_drive_has_its_wall_where_it_is_and_no_trail() {
     let read = |header: &_| Ok::<_, Fault>(drive.sweep_number(header).map(|at| drive.points(at)));
     let aggregated = aggregate_scene(scene, &rules, read, |_| ()).unwrap();
     let keyframe = &scene.keyframes[2];
-    let labels = label_keyframe(scene, &aggregated, keyframe, &rules, 2, |_| ()).labels;
+    let labels =
+        label_keyframe(scene, &aggregated, &Lenses::default(), keyframe, &rules, 2, |_| ()).labels;
 
     let world_from_ego = scene.sweeps[keyframe.sweep].world_from_ego;
     let PointLabel::Class(car) = drive.label_of(What::Mover(mover(&drive, "car"))) else {

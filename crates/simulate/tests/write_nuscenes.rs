@@ -8,7 +8,8 @@ use occlabel_core::{
 };
 use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use occlabel_pipeline::{
-    Autos, Config, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset, shipped_taxonomy,
+    Autos, Config, Lenses, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset,
+    shipped_taxonomy,
 };
 use occlabel_simulate::{Drive, Images, Output, Return, World, render, write_nuscenes};
 use tempfile::TempDir;
@@ -223,7 +224,8 @@ fn labels(
 ) -> OccupancyLabels {
     let read = |header: &_| Ok::<_, Fault>(Some(points(header)));
     let aggregated = aggregate_scene(scene, rules, read, |_| ()).unwrap();
-    label_keyframe(scene, &aggregated, &scene.keyframes[1], rules, 1, |_| ()).labels
+    label_keyframe(scene, &aggregated, &Lenses::default(), &scene.keyframes[1], rules, 1, |_| ())
+        .labels
 }
 
 #[test]

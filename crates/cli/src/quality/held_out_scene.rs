@@ -12,7 +12,7 @@ use occlabel_evaluate::held_out::{
     nearest_keyframe, place,
 };
 use occlabel_logs::Inventory;
-use occlabel_pipeline::{aggregate_scene, label_keyframe, sort_scene, standing_at};
+use occlabel_pipeline::{Lenses, aggregate_scene, label_keyframe, sort_scene, standing_at};
 
 use crate::console::Console;
 use crate::exit::Stop;
@@ -126,8 +126,16 @@ impl HeldOutRun<'_> {
         let (rules, scene) = (&self.opened.rules, &divided.scene);
         // What cameras see is not asked.
         let unseen = Keyframe { exposures: Vec::new(), ..keyframe.clone() };
-        let labels =
-            label_keyframe(scene, &divided.fused, &unseen, rules, self.threads, |_| {}).labels;
+        let labels = label_keyframe(
+            scene,
+            &divided.fused,
+            &Lenses::default(),
+            &unseen,
+            rules,
+            self.threads,
+            |_| {},
+        )
+        .labels;
         let grid_from_world = rules.world_from_grid(scene.reference_sweep(keyframe)).inverse();
         let standing = standing_at(scene, keyframe.time, &grid_from_world, rules);
         let moment = JudgedMoment {

@@ -8,7 +8,7 @@ use occlabel_core::{
     AggregatedScene, Box3, BoxTrack, ClassId, Exposure, Keyframe, Meaning, NamedCamera,
     OccupancyLabels, PointCloud, PointLabel, Pose, Scene, SweepHeader, Timestamp, TrackId,
 };
-use occlabel_pipeline::{Rules, aggregate_scene, label_keyframe};
+use occlabel_pipeline::{Lenses, Rules, aggregate_scene, label_keyframe};
 
 /// A scene with what its reader would deliver.
 #[derive(Clone, Debug, Default)]
@@ -69,9 +69,11 @@ impl Drive {
         shards: usize,
     ) -> Vec<OccupancyLabels> {
         let aggregated = self.aggregate(rules, is_read);
-        let keyframes = self.scene.keyframes.iter();
+        let (keyframes, lenses) = (self.scene.keyframes.iter(), Lenses::default());
         keyframes
-            .map(|k| label_keyframe(&self.scene, &aggregated, k, rules, shards, |_| ()).labels)
+            .map(|k| {
+                label_keyframe(&self.scene, &aggregated, &lenses, k, rules, shards, |_| ()).labels
+            })
             .collect()
     }
 }
