@@ -13,8 +13,8 @@ use occlabel_core::{Keyframe, VoxelGrid};
 use occlabel_evaluate::{JudgedLabels, KnownWorld, Scale, Tally, judge};
 use occlabel_occlusion::Eye;
 use occlabel_pipeline::{
-    Autos, Config, LabelOptions, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset,
-    shipped_taxonomy,
+    Autos, Config, LabelOptions, Lenses, Rules, aggregate_scene, label_keyframe, parse_taxonomy,
+    preset, shipped_taxonomy,
 };
 use occlabel_simulate::{
     Drive, TrueRays, TruthAt, TruthSettings, World, dense_ends, keyframe_truth, shipped_world,
@@ -82,6 +82,7 @@ fn label_and_judge(drive: &Drive, rays: &TrueRays, rules: &Rules, every: usize) 
         let labels = label_keyframe(
             scene,
             &aggregated,
+            &Lenses::default(),
             at.keyframe,
             rules,
             &LabelOptions::with_evidence(2),

@@ -63,4 +63,4 @@ pub use taxonomy::{Meaning, Taxonomy, TaxonomyError};
 pub use time::Timestamp;
 pub use traverse::{Traverse, traverse};
 pub use truth::VoxelTruth;
-pub use walk::walk;
+pub use walk::{walk, walk_after};

@@ -36,6 +36,32 @@ pub fn walk(
     front.walk_inside(spec, visit);
 }
 
+/// Calls `visit` as [`walk`] does, but first for the voxel entered through face number `faces` (from
+/// 1) of `axis`; for none if the way ends before.
+///
+/// The way must begin in the grid.
+#[inline]
+pub fn walk_after(
+    spec: &GridSpec,
+    [from, to]: [LatticePoint; 2],
+    (axis, faces): (usize, i64),
+    mut visit: impl FnMut(usize, [i64; 3]) -> ControlFlow<()>,
+) {
+    let Some(mut front) = Front::new(from, to) else {
+        let is_after = |at: [i64; 3]| (at[axis] - from.voxel().0[axis]).abs() >= faces;
+        let late =
+            |flat, at| if is_after(at) { visit(flat, at) } else { ControlFlow::Continue(()) };
+        return walk_textbook(spec, from, to, late);
+    };
+    if front.left[axis] < faces {
+        return;
+    }
+    front.pass_face(axis, faces);
+    if front.is_inside(spec) && visit(front.flat(spec), front.voxel).is_continue() {
+        front.walk_inside(spec, visit);
+    }
+}
+
 #[cold]
 fn walk_textbook(
     spec: &GridSpec,
@@ -94,6 +120,12 @@ impl Front {
     /// Moves to the first voxel of the grid on the way; `false` if there is none.
     fn enter(&mut self, spec: &GridSpec) -> bool {
         let Some((axis, steps)) = self.last_face(spec) else { return false };
+        self.pass_face(axis, steps);
+        self.is_inside(spec)
+    }
+
+    /// Moves to the voxel entered through face number `steps` of an axis.
+    fn pass_face(&mut self, axis: usize, steps: i64) {
         let moment = self.to_face[axis] + (steps - 1) * LATTICE;
         let done: [i64; 3] = std::array::from_fn(|other| {
             if other == axis { steps } else { self.steps_before(other, moment, axis) }
@@ -103,7 +135,6 @@ impl Front {
             self.to_face[other] += LATTICE * done[other];
             self.left[other] -= done[other];
         }
-        self.is_inside(spec)
     }
 
     /// Of the faces through which each axis comes into range: the one met last, and how many steps
@@ -260,6 +291,38 @@ mod tests {
         assert!(voxels.get() > 10_000, "{} voxels", voxels.get());
         assert!(entering.get() > 2_000, "{} rays came from outside", entering.get());
         assert!(ties.get() > 100, "{} rays ran along a diagonal", ties.get());
+    }
+
+    /// The voxels visited after a face.
+    fn after(from: LatticePoint, to: LatticePoint, face: (usize, i64)) -> Vec<VoxelIndex> {
+        let mut seen = Vec::new();
+        walk_after(&spec(), [from, to], face, |_, voxel| {
+            seen.push(VoxelIndex(voxel));
+            ControlFlow::Continue(())
+        });
+        seen
+    }
+
+    #[test]
+    fn section_8_a_walk_after_a_face_is_the_rest_of_the_walk() {
+        let (rays, rests) = (Cell::new(0), Cell::new(0));
+        proptest!(ProptestConfig::with_cases(20_000), |(from in end(), to in end(), axis in 0_usize..3, faces in 1_i64..5)| {
+            let sides = spec().shape().map(|n| n as i64 * LATTICE);
+            let from = LatticePoint([0, 1, 2].map(|axis: usize| from.0[axis].rem_euclid(sides[axis])));
+            let is_after = |voxel: &VoxelIndex| (voxel.0[axis] - from.voxel().0[axis]).abs() >= faces;
+            let rest: Vec<_> = textbook(from, to).into_iter().filter(is_after).collect();
+            prop_assert_eq!(after(from, to, (axis, faces)), rest.clone());
+            rays.set(rays.get() + 1);
+            rests.set(rests.get() + usize::from(!rest.is_empty()));
+        });
+        assert!(rays.get() == 20_000 && rests.get() > 5_000, "{} of {}", rests.get(), rays.get());
+    }
+
+    #[test]
+    fn fault_07_a_walk_after_a_face_may_be_beyond_64_bits() {
+        let from = LatticePoint([3 * LATTICE + 1, 1, 1]);
+        let to = LatticePoint([3 * LATTICE + 1, 1, 1 << 33 | 1]);
+        assert_eq!(after(from, to, (2, 3)), [VoxelIndex([3, 0, 3])]);
     }
 
     #[test]

@@ -27,13 +27,27 @@
 //!     pixel_stride: 1,
 //!     depth_max_m: 100.0,
 //! };
-//! let bits = visible(&[eye], &spec, &things, &settings);
+//! let bits = visible(&[eye], &Lenses::default(), &spec, &things, &settings);
 //! assert_eq!(bits.values(), [1, 1, 1, 1, 0], "the voxel behind the solid one is hidden");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod beam;
+mod bit_columns;
+mod cones;
 mod eye;
+mod fan;
+mod lenses;
+mod look;
+mod march;
+mod matter;
+mod pixel_rays;
+mod settings;
+mod view;
 mod visible;
 
 pub use eye::Eye;
-pub use visible::{CameraRays, Matter, Occluders, OcclusionSettings, matter, visible};
+pub use lenses::Lenses;
+pub use matter::{Matter, matter};
+pub use settings::{CameraRays, Occluders, OcclusionSettings};
+pub use visible::visible;

@@ -1,184 +1,125 @@
 //! Casting the cameras' rays (labels.md section 10).
 
-use std::ops::ControlFlow;
+use std::ops::Range;
 
-use occlabel_core::{
-    ClassSet, GridSpec, LatticePoint, VoxelGrid, VoxelIndex, VoxelState, VoxelVote, walk,
-};
+use occlabel_core::{GridSpec, VoxelGrid, VoxelIndex};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use crate::Eye;
+use crate::bit_columns::BitColumns;
+use crate::fan::{Targets, cast_fan};
+use crate::look::Look;
+use crate::pixel_rays::cast_pixels;
+use crate::view::View;
+use crate::{CameraRays, Eye, Lenses, Matter, Occluders, OcclusionSettings};
 
-/// The `[occlusion]` table.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OcclusionSettings {
-    /// Which rays are cast.
-    pub rays: CameraRays,
-    /// Which voxels end a ray.
-    pub occluders: Occluders,
-    /// Under `pixels`: every how many-th pixel of each row and column, at least 1.
-    pub pixel_stride: usize,
-    /// How far a camera sees, metres.
-    pub depth_max_m: f64,
-}
-
-/// Which rays a camera casts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CameraRays {
-    /// To the centre of each occupied voxel in view (Occ3D text, GS-Occ3D).
-    OccupiedCenters,
-    /// To the centre of each voxel in view.
-    AllCenters,
-    /// Through pixel centres (Occ3D Algorithm 3, with the text's stop).
-    Pixels,
-}
-
-/// Which occupied voxels end a ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Occluders {
-    /// All of them.
-    All,
-    /// All but those of flat classes, which are seen wherever they are in view (published masks).
-    NonFlat,
-}
-
-/// What a voxel is to a camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Matter {
-    /// Not occupied, observed or not: never blocks.
-    Air,
-    /// Occupied by a flat class.
-    Ground,
-    /// Occupied by anything else.
-    Solid,
-}
-
-/// What each voxel is to a camera, from its final state and class.
-///
-/// # Panics
-/// If the grids differ in shape.
-pub fn matter(
-    states: &VoxelGrid<VoxelState>,
-    votes: &VoxelGrid<Option<VoxelVote>>,
-    flat: &ClassSet,
-) -> VoxelGrid<Matter> {
-    states.zip_map(votes, |state, vote| match (state, vote) {
-        (VoxelState::Occupied, Some(vote)) if flat.contains(vote.class) => Matter::Ground,
-        (VoxelState::Occupied, _) => Matter::Solid,
-        _ => Matter::Air,
-    })
-}
+/// Columns along x and y that are asked together whether they can be in view.
+const BRICK: usize = 8;
 
 /// For each voxel the bits of the cameras that see it. Parallel over cameras.
+///
+/// `lenses` are those of the scene, or new ones.
 pub fn visible(
     eyes: &[Eye],
+    lenses: &Lenses,
     spec: &GridSpec,
     matter: &VoxelGrid<Matter>,
     settings: &OcclusionSettings,
 ) -> VoxelGrid<u16> {
-    let seen: Vec<(usize, VoxelGrid<bool>)> =
-        eyes.par_iter().map(|eye| (eye.bit, seen_by(eye, spec, matter, settings))).collect();
+    let sights = Sights::new(spec, matter, settings);
+    let looks: Vec<Look> = eyes.par_iter().map(|eye| sights.look(eye, lenses)).collect();
     let mut bits = VoxelGrid::filled(spec, 0);
-    for (bit, seen) in seen {
-        let flags = seen.values().iter().map(|&is_seen| u16::from(is_seen) << bit);
-        bits.values_mut().iter_mut().zip(flags).for_each(|(bits, flag)| *bits |= flag);
+    for (eye, look) in eyes.iter().zip(&looks) {
+        look.add_bit(eye.bit, bits.values_mut());
     }
     bits
 }
 
-fn seen_by(
-    eye: &Eye,
-    spec: &GridSpec,
-    matter: &VoxelGrid<Matter>,
-    settings: &OcclusionSettings,
-) -> VoxelGrid<bool> {
-    let mut look = Look {
-        spec,
-        matter: matter.values(),
-        occluders: settings.occluders,
-        start: spec.snap(&eye.position()),
-        seen: VoxelGrid::filled(spec, false),
-    };
-    if settings.rays == CameraRays::Pixels {
-        for end in eye.pixel_ends(settings.pixel_stride, settings.depth_max_m) {
-            look.along(spec.snap(&end));
-        }
-    }
-    let is_in_view = eye.view(settings.depth_max_m);
-    for flat in 0..spec.len() {
-        let (is_target, is_plain) = (look.is_target(flat, settings.rays), look.is_plain(flat));
-        if (is_target || is_plain) && is_in_view(&spec.centre(spec.voxel_at(flat))) {
-            look.at(flat, is_target);
-        }
-    }
-    look.seen
-}
-
-/// One camera's view so far.
-struct Look<'a> {
+/// What all cameras of a keyframe look at, and how.
+struct Sights<'a> {
     spec: &'a GridSpec,
-    matter: &'a [Matter],
-    occluders: Occluders,
-    start: LatticePoint,
-    seen: VoxelGrid<bool>,
+    settings: &'a OcclusionSettings,
+    /// Voxels that end rays.
+    blocks: BitColumns,
+    /// Voxels to whose centres rays are cast where they are in view.
+    targets: BitColumns,
+    /// Voxels that are seen wherever they are in view.
+    plain: BitColumns,
 }
 
-impl Look<'_> {
-    /// Whether a ray is cast to the centre of a voxel that is in view.
-    fn is_target(&self, flat: usize, rays: CameraRays) -> bool {
-        match rays {
+impl<'a> Sights<'a> {
+    fn new(
+        spec: &'a GridSpec,
+        matter: &VoxelGrid<Matter>,
+        settings: &'a OcclusionSettings,
+    ) -> Self {
+        let is_plain = |m| m == Matter::Ground && settings.occluders == Occluders::NonFlat;
+        let is_target = |m| match settings.rays {
             CameraRays::AllCenters => true,
-            CameraRays::OccupiedCenters => self.matter[flat] != Matter::Air,
+            CameraRays::OccupiedCenters => m != Matter::Air,
             CameraRays::Pixels => false,
+        };
+        Self {
+            spec,
+            settings,
+            blocks: BitColumns::of(spec, matter, |m| m != Matter::Air && !is_plain(m)),
+            targets: BitColumns::of(spec, matter, is_target),
+            plain: BitColumns::of(spec, matter, is_plain),
         }
     }
 
-    /// Whether a voxel is seen wherever it is in view.
-    fn is_plain(&self, flat: usize) -> bool {
-        self.occluders == Occluders::NonFlat && self.matter[flat] == Matter::Ground
-    }
-
-    /// Looks at a voxel in view.
-    fn at(&mut self, flat: usize, is_target: bool) {
-        if self.is_plain(flat) {
-            self.seen.values_mut()[flat] = true;
+    /// What one camera sees.
+    fn look(&self, eye: &Eye, lenses: &Lenses) -> Look<'a> {
+        let mut look = Look::new(self.spec, &eye.position(), &self.blocks);
+        if self.settings.rays == CameraRays::Pixels {
+            let cones = lenses.cones(eye, self.settings.pixel_stride);
+            cast_pixels(&mut look, eye, &cones, self.settings.depth_max_m);
         }
-        if is_target {
-            self.along(self.spec.lattice_centre(self.spec.voxel_at(flat)));
+        let view = View::new(eye, self.settings.depth_max_m);
+        for brick in bricks(self.spec.shape()) {
+            self.look_at(&mut look, &view, &brick);
         }
+        look
     }
 
-    /// Marks all that a ray sees: from the camera's own voxel to the first that blocks.
-    #[inline]
-    fn along(&mut self, end: LatticePoint) {
-        self.mark(self.start.voxel());
-        let (matter, occluders, seen) = (self.matter, self.occluders, self.seen.values_mut());
-        walk(self.spec, self.start, end, |flat, _| {
-            seen[flat] = true;
-            if blocks(matter[flat], occluders) {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        });
-    }
-
-    fn mark(&mut self, voxel: VoxelIndex) {
-        if let Some(flat) = self.spec.flat(voxel) {
-            self.seen.values_mut()[flat] = true;
+    /// Looks at the voxels of a brick that are in view.
+    fn look_at(&self, look: &mut Look, view: &View, brick: &[Range<usize>; 3]) {
+        let [low, high] = [brick.clone().map(|r| r.start), brick.clone().map(|r| r.end - 1)];
+        if !view.may_have(self.spec, voxel(low), voxel(high)) {
+            return;
+        }
+        let [xs, ys, zs] = brick;
+        for (x, y) in xs.clone().flat_map(|x| ys.clone().map(move |y| (x, y))) {
+            let column = x * self.spec.shape()[1] + y;
+            let targets = self.targets.bits(column, zs.start);
+            let plain = self.plain.bits(column, zs.start);
+            let is_seen = |k| view.has(&self.spec.centre(voxel([x, y, zs.start + k])));
+            let in_view =
+                ones(targets | plain).filter(|&k| is_seen(k)).fold(0, |all, k| all | 1 << k);
+            ones(plain & in_view).for_each(|k| look.mark(column, zs.start + k));
+            cast_fan(look, Targets { column, bottom: zs.start, bits: targets & in_view });
         }
     }
 }
 
-#[inline]
-fn blocks(matter: Matter, occluders: Occluders) -> bool {
-    match matter {
-        Matter::Air => false,
-        Matter::Ground => occluders == Occluders::All,
-        Matter::Solid => true,
-    }
+fn voxel(at: [usize; 3]) -> VoxelIndex {
+    VoxelIndex(at.map(|i| i as i64))
+}
+
+/// The places of the bits that are set.
+fn ones(bits: u64) -> impl Iterator<Item = usize> {
+    let rests = std::iter::successors(Some(bits), |rest| Some(rest & rest.wrapping_sub(1)));
+    rests.take_while(|rest| *rest != 0).map(|rest| rest.trailing_zeros() as usize)
+}
+
+/// The grid cut into bricks of few columns and at most 64 voxels of each.
+fn bricks(shape: [usize; 3]) -> impl Iterator<Item = [Range<usize>; 3]> {
+    let parts = move |axis: usize, size: usize| {
+        (0..shape[axis]).step_by(size).map(move |from| from..(from + size).min(shape[axis]))
+    };
+    parts(0, BRICK).flat_map(move |xs| {
+        parts(1, BRICK).flat_map(move |ys| {
+            let xs = xs.clone();
+            parts(2, 64).map(move |zs| [xs.clone(), ys.clone(), zs])
+        })
+    })
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 use occlabel_core::camera::{CameraModel, Intrinsics, Pinhole};
 use occlabel_core::{Camera, GridSpec, Pose, VoxelGrid};
-use occlabel_occlusion::{CameraRays, Eye, Matter, Occluders, OcclusionSettings, visible};
+use occlabel_occlusion::{CameraRays, Eye, Lenses, Matter, Occluders, OcclusionSettings, visible};
 
 fn seen(shape: [usize; 3], at: [f64; 3], yaw: f64, solid: [i64; 3], depth_max_m: f64) -> bool {
     let k = [[50.0, 0.0, 50.0], [0.0, 50.0, 50.0], [0.0, 0.0, 1.0]];
@@ -22,7 +22,8 @@ fn seen(shape: [usize; 3], at: [f64; 3], yaw: f64, solid: [i64; 3], depth_max_m:
         pixel_stride: 1,
         depth_max_m,
     };
-    *visible(&[eye], &spec, &matter, &settings).at(solid.map(|i| i as usize)) == 1
+    *visible(&[eye], &Lenses::default(), &spec, &matter, &settings).at(solid.map(|i| i as usize))
+        == 1
 }
 
 /// The camera at the centre of voxel (0, 2, 2) looks along x; the voxel's centre is 1..39 m ahead.

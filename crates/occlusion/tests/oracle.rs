@@ -9,7 +9,9 @@ use occlabel_core::{
     Camera, ClassId, ClassSet, GridSpec, LatticePoint, Pose, VoxelGrid, VoxelState, VoxelVote,
     traverse,
 };
-use occlabel_occlusion::{CameraRays, Eye, Matter, Occluders, OcclusionSettings, matter, visible};
+use occlabel_occlusion::{
+    CameraRays, Eye, Lenses, Matter, Occluders, OcclusionSettings, matter, visible,
+};
 use proptest::prelude::*;
 
 const ROAD: ClassId = ClassId(11);
@@ -372,7 +374,7 @@ impl Case {
             camera: &seer.camera,
             grid_from_camera: seer.grid_from_camera,
         });
-        visible(&eyes.collect::<Vec<_>>(), &self.spec(), matter, &self.settings)
+        visible(&eyes.collect::<Vec<_>>(), &Lenses::default(), &self.spec(), matter, &self.settings)
     }
 }
 

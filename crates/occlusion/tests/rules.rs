@@ -2,7 +2,9 @@
 
 use occlabel_core::camera::{BodyMask, CameraModel, Intrinsics, Ocam, Pinhole};
 use occlabel_core::{Camera, ClassId, ClassSet, GridSpec, Pose, VoxelGrid, VoxelState, VoxelVote};
-use occlabel_occlusion::{CameraRays, Eye, Matter, Occluders, OcclusionSettings, matter, visible};
+use occlabel_occlusion::{
+    CameraRays, Eye, Lenses, Matter, Occluders, OcclusionSettings, matter, visible,
+};
 
 use Matter::{Air, Ground, Solid};
 
@@ -44,12 +46,19 @@ fn grid(shape: [usize; 3]) -> GridSpec {
 fn seen_in_column<const N: usize>(column: [Matter; N], settings: &OcclusionSettings) -> Vec<u16> {
     let spec = grid([1, 1, N]);
     let matter = VoxelGrid::from_values(&spec, column.to_vec());
-    visible(&[eye(&square(101), 0, [0.5; 3])], &spec, &matter, settings).into_values()
+    visible(&[eye(&square(101), 0, [0.5; 3])], &Lenses::default(), &spec, &matter, settings)
+        .into_values()
 }
 
 /// Bits of a grid, of which the given voxels are solid.
 fn bits(eyes: &[Eye], spec: &GridSpec, solid: &[[i64; 3]], rays: CameraRays) -> VoxelGrid<u16> {
-    visible(eyes, spec, &solids(spec, solid), &OcclusionSettings { rays, ..ALL_CENTERS })
+    visible(
+        eyes,
+        &Lenses::default(),
+        spec,
+        &solids(spec, solid),
+        &OcclusionSettings { rays, ..ALL_CENTERS },
+    )
 }
 
 fn solids(spec: &GridSpec, solid: &[[i64; 3]]) -> VoxelGrid<Matter> {
@@ -101,7 +110,13 @@ fn section_10_unobserved_voxels_never_block() {
         &ClassSet::default(),
     );
     assert_eq!(matter.values(), [Air, Air, Air, Solid, Air]);
-    let seen = visible(&[eye(&square(101), 0, [0.5; 3])], &spec, &matter, &ALL_CENTERS);
+    let seen = visible(
+        &[eye(&square(101), 0, [0.5; 3])],
+        &Lenses::default(),
+        &spec,
+        &matter,
+        &ALL_CENTERS,
+    );
     assert_eq!(seen.values(), [1, 1, 1, 1, 0]);
 }
 
@@ -160,7 +175,9 @@ fn section_10_the_depth_is_euclids() {
         let rays = CameraRays::OccupiedCenters;
         let settings = OcclusionSettings { rays, depth_max_m, ..ALL_CENTERS };
         let matter = solids(&spec, &[[3, 0, 4]]);
-        *visible(&[eye(&camera, 0, [0.5; 3])], &spec, &matter, &settings).at([3, 0, 4]) == 1
+        *visible(&[eye(&camera, 0, [0.5; 3])], &Lenses::default(), &spec, &matter, &settings)
+            .at([3, 0, 4])
+            == 1
     };
     assert!(sees_it(5.0));
     assert!(!sees_it(4.999_999));
@@ -193,7 +210,7 @@ fn section_10_a_voxel_behind_the_body_mask_is_not_in_view() {
     }
     let ground = solids(&spec, &places).map(|m| if *m == Solid { Ground } else { Air });
     let non_flat = OcclusionSettings { occluders: Occluders::NonFlat, ..ALL_CENTERS };
-    let seen = visible(&eyes, &spec, &ground, &non_flat);
+    let seen = visible(&eyes, &Lenses::default(), &spec, &ground, &non_flat);
     assert_eq!(places.map(|v| *seen.at(v.map(|i| i as usize))), [3, 3, 1], "ground");
 }
 
@@ -267,7 +284,7 @@ fn section_10_the_pixel_stride_picks_pixels_0_s_2s() {
         let (rays, depth_max_m) = (CameraRays::Pixels, 10.45);
         let settings = OcclusionSettings { rays, pixel_stride: stride, depth_max_m, ..ALL_CENTERS };
         let eyes = [eye(&camera, 0, [3.0, 3.0, 0.5])];
-        let seen = visible(&eyes, &spec, &solids(&spec, &[]), &settings);
+        let seen = visible(&eyes, &Lenses::default(), &spec, &solids(&spec, &[]), &settings);
         for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
             let is_picked = i % stride == 0 && j % stride == 0;
             assert_eq!(*seen.at([i, j, 10]), u16::from(is_picked), "({i}, {j}) by {stride}");

@@ -6,7 +6,7 @@ use occlabel_core::{
     AggregatedScene, ClassId, Evidence, Keyframe, OccupancyLabels, Pose, RayCounts, Scene,
     VoxelGrid, VoxelState, VoxelVote,
 };
-use occlabel_occlusion::{Eye, matter, visible};
+use occlabel_occlusion::{Eye, Lenses, matter, visible};
 use occlabel_raycast::{Casting, Crossings, StateSettings, classify, count};
 use occlabel_voxelize::voxelize;
 
@@ -66,10 +66,12 @@ pub struct LabelledKeyframe {
     pub rays: u64,
 }
 
-/// Labels a keyframe. `enter` is told which stage begins.
+/// Labels a keyframe. `lenses` are those of the scene, the same for all its keyframes; `enter` is
+/// told which stage begins.
 pub fn label_keyframe(
     scene: &Scene,
     aggregated: &AggregatedScene<ClassId>,
+    lenses: &Lenses,
     keyframe: &Keyframe,
     rules: &Rules,
     options: &LabelOptions,
@@ -95,7 +97,8 @@ pub fn label_keyframe(
 
     enter(Stage::Occlusion);
     let eyes = open_eyes(scene, keyframe, &grid_from_world);
-    let camera_bits = visible(&eyes, spec, &matter(&states, &votes, ground), &rules.occlusion);
+    let matter = matter(&states, &votes, ground);
+    let camera_bits = visible(&eyes, lenses, spec, &matter, &rules.occlusion);
 
     enter(Stage::Finish);
     let occupied = occupied_votes(&states, &votes);

@@ -36,6 +36,7 @@ pub use aggregate_scene::{aggregate_scene, boxes_at, sort_scene};
 pub use config::{Autos, Config, EgoBox, GridFrame, Limit, ReaderTables};
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
+pub use occlabel_occlusion::Lenses;
 pub use presets::{PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_taxonomy};
 pub use rules::Rules;
 pub use standing::standing_at;

@@ -3,8 +3,8 @@
 use nalgebra::{Point3, Vector3};
 use occlabel_core::{Fault, PointLabel, Taxonomy, Timestamp};
 use occlabel_pipeline::{
-    Autos, Config, LabelOptions, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset,
-    shipped_taxonomy,
+    Autos, Config, LabelOptions, Lenses, Rules, aggregate_scene, label_keyframe, parse_taxonomy,
+    preset, shipped_taxonomy,
 };
 use occlabel_simulate::{Drive, Ray, What, World};
 
@@ -242,6 +242,7 @@ fn a_labelled_drive_has_its_wall_where_it_is_and_no_trail() {
     let labels = label_keyframe(
         scene,
         &aggregated,
+        &Lenses::default(),
         keyframe,
         &rules,
         &LabelOptions::with_evidence(2),

@@ -8,8 +8,8 @@ use occlabel_core::{
 };
 use occlabel_logs::{NuScenesLog, NuScenesOptions, QuaternionOrder, ReadOptions, SceneSource};
 use occlabel_pipeline::{
-    Autos, Config, LabelOptions, Rules, aggregate_scene, label_keyframe, parse_taxonomy, preset,
-    shipped_taxonomy,
+    Autos, Config, LabelOptions, Lenses, Rules, aggregate_scene, label_keyframe, parse_taxonomy,
+    preset, shipped_taxonomy,
 };
 use occlabel_simulate::{Drive, Images, Output, Return, World, render, write_nuscenes};
 use tempfile::TempDir;
@@ -227,6 +227,7 @@ fn labels(
     label_keyframe(
         scene,
         &aggregated,
+        &Lenses::default(),
         &scene.keyframes[1],
         rules,
         &LabelOptions::with_evidence(1),

@@ -7,7 +7,7 @@ use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, 
 use occlabel_labels::{
     FileRecord, Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz,
 };
-use occlabel_pipeline::{LabelOptions, aggregate_scene, label_keyframe};
+use occlabel_pipeline::{LabelOptions, Lenses, aggregate_scene, label_keyframe};
 use serde_json::Value;
 
 use crate::exit::Stop;
@@ -43,6 +43,7 @@ pub(crate) struct SceneDone {
 struct Bench<'a> {
     scene: &'a Scene,
     aggregated: &'a AggregatedScene<ClassId>,
+    lenses: Lenses,
     /// What was lost of the scene.
     losses: Vec<Value>,
     journal: Mutex<&'a mut Journal>,
@@ -82,7 +83,8 @@ impl SceneRun<'_> {
         });
         let losses = findings.losses_of(&scene.name);
         let (journal, done) = (Mutex::new(journal), Mutex::new(done));
-        let bench = Bench { scene: &scene, aggregated: &aggregated, losses, journal, done };
+        let lenses = Lenses::default();
+        let bench = Bench { scene: &scene, aggregated: &aggregated, lenses, losses, journal, done };
         let is_over = || self.interrupt.is_raised();
         let (at_once, _) = self.planned.at_once;
         workers::for_each(&todo, at_once, is_over, |keyframe| self.finish(keyframe, &bench))?;
@@ -139,10 +141,17 @@ impl SceneRun<'_> {
         let (mut clock, (_, shards)) = (StageClock::start(), self.planned.at_once);
         let rules = &self.job.opened.rules;
         let options = LabelOptions { evidence: self.job.args.evidence, shards };
-        let labelled =
-            label_keyframe(bench.scene, bench.aggregated, keyframe, rules, &options, |stage| {
+        let labelled = label_keyframe(
+            bench.scene,
+            bench.aggregated,
+            &bench.lenses,
+            keyframe,
+            rules,
+            &options,
+            |stage| {
                 clock.enter(stage);
-            });
+            },
+        );
         let entry = JournalEntry {
             scene: bench.scene.name.clone(),
             keyframe: keyframe.token.clone(),

@@ -12,7 +12,9 @@ use occlabel_evaluate::held_out::{
     nearest_keyframe, place,
 };
 use occlabel_logs::Inventory;
-use occlabel_pipeline::{LabelOptions, aggregate_scene, label_keyframe, sort_scene, standing_at};
+use occlabel_pipeline::{
+    LabelOptions, Lenses, aggregate_scene, label_keyframe, sort_scene, standing_at,
+};
 
 use crate::console::Console;
 use crate::exit::Stop;
@@ -129,6 +131,7 @@ impl HeldOutRun<'_> {
         let labels = label_keyframe(
             scene,
             &divided.fused,
+            &Lenses::default(),
             &unseen,
             rules,
             &LabelOptions::labels(self.threads),

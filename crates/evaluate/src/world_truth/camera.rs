@@ -1,7 +1,7 @@
 //! What the cameras would see if every voxel were labelled right.
 
 use occlabel_core::{VoxelGrid, VoxelTruth};
-use occlabel_occlusion::{CameraRays, Matter, OcclusionSettings, visible};
+use occlabel_occlusion::{CameraRays, Lenses, Matter, OcclusionSettings, visible};
 
 use super::judge::KnownWorld;
 use super::scale::Scale;
@@ -12,7 +12,8 @@ pub(super) fn exact_camera_mask(known: &KnownWorld, scale: &Scale) -> Option<Vec
     let settings = known.occlusion.filter(|_| !known.eyes.is_empty())?;
     let settings = OcclusionSettings { rays: CameraRays::Pixels, pixel_stride: 1, ..*settings };
     let matter = known.truth.map(|truth| matter_of(truth, scale));
-    let bits: VoxelGrid<u16> = visible(known.eyes, &scale.spec, &matter, &settings);
+    let bits: VoxelGrid<u16> =
+        visible(known.eyes, &Lenses::default(), &scale.spec, &matter, &settings);
     Some(bits.values().iter().map(|&bits| bits != 0).collect())
 }
 

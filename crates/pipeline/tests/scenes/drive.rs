@@ -8,7 +8,7 @@ use occlabel_core::{
     AggregatedScene, Box3, BoxTrack, ClassId, Exposure, Keyframe, Meaning, NamedCamera,
     OccupancyLabels, PointCloud, PointLabel, Pose, Scene, SweepHeader, Timestamp, TrackId,
 };
-use occlabel_pipeline::{LabelOptions, Rules, aggregate_scene, label_keyframe};
+use occlabel_pipeline::{LabelOptions, Lenses, Rules, aggregate_scene, label_keyframe};
 
 /// A scene with what its reader would deliver.
 #[derive(Clone, Debug, Default)]
@@ -69,10 +69,12 @@ impl Drive {
         shards: usize,
     ) -> Vec<OccupancyLabels> {
         let aggregated = self.aggregate(rules, is_read);
-        let options = LabelOptions::with_evidence(shards);
+        let (options, lenses) = (LabelOptions::with_evidence(shards), Lenses::default());
         let keyframes = self.scene.keyframes.iter();
         keyframes
-            .map(|k| label_keyframe(&self.scene, &aggregated, k, rules, &options, |_| ()).labels)
+            .map(|k| {
+                label_keyframe(&self.scene, &aggregated, &lenses, k, rules, &options, |_| ()).labels
+            })
             .collect()
     }
 }
