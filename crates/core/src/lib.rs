@@ -42,7 +42,7 @@ pub use aggregated::{AggregatedScene, BackgroundSweep, DropCounts, ObjectSweep};
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
 pub use camera::Camera;
 pub use class::{ClassId, ClassSet};
-pub use cloud::{PointCloud, PointLabel};
+pub use cloud::{PointCloud, PointLabel, is_finite};
 pub use exposure::{EXPOSURE_WITHIN_S, nearest_exposure};
 pub use fault::{Fault, printable};
 pub use grid::{GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};
