@@ -13,3 +13,4 @@ mod resume;
 mod streams;
 #[path = "../support/mod.rs"]
 mod support;
+mod unwritable;

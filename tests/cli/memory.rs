@@ -32,3 +32,30 @@ fn one_keyframe_at_a_time_gives_the_same_bytes() {
     bound.clone().with(&["--memory", &bytes]).run().exits(0);
     assert_eq!(tree_hash(&bound.output), tree_hash(&free.output));
 }
+
+/// The largest resident set of a run, less that of a run in a tiny grid; and the grid's voxels.
+#[cfg(target_os = "linux")]
+fn peak_bytes_a_voxel(log: &TestLog, jobs: &str, name: &str) -> f64 {
+    let peak = |label: Label| -> f64 {
+        label.clone().with(&["--jobs", jobs]).run().exits(0);
+        let report = std::fs::read(label.output.join("report.json")).expect("a report");
+        let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+        report["peak_memory_bytes"].as_f64().expect("a number")
+    };
+    let label = |grid: &str| Label::new(&log.root(), &log.beside(&format!("{name}-{grid}")));
+    let keyframe = log.keyframes().remove(1);
+    let one = |grid| label(grid).with(&["--keyframes", &keyframe]);
+    let fine = one("fine").with(&["--set", "grid.voxel_size_m=0.2"]);
+    (peak(fine) - peak(one("small").small())) / 5_120_000.0
+}
+
+/// As `pipeline/memory.rs` has it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_voxel_takes_no_more_memory_than_the_plan_takes_it_for() {
+    let log = TestLog::nano();
+    for jobs in ["1", "2"] {
+        let bytes = peak_bytes_a_voxel(&log, jobs, jobs);
+        assert!((5.0..=46.0 + 2.0).contains(&bytes), "{bytes} bytes a voxel with {jobs} threads");
+    }
+}

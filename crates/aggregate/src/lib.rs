@@ -42,6 +42,7 @@
 
 mod accumulate;
 mod beam_order;
+mod cabinet;
 mod compose;
 mod split;
 

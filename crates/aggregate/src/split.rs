@@ -2,11 +2,12 @@
 
 use nalgebra::Point3;
 use occlabel_core::{
-    BackgroundSweep, Box3, BoxGrowth, ClassId, DropCounts, GrownBox, ObjectSweep, PointCloud,
-    PointLabel, RigidMap, Sweep, TrackId,
+    BackgroundSweep, Box3, BoxGrowth, ClassId, DropCounts, ObjectSweep, PointCloud, PointLabel,
+    RigidMap, Sweep, TrackId, is_finite,
 };
 
 use crate::beam_order::beam_order;
+use crate::cabinet::Cabinet;
 
 /// What is left out of a sweep, and how boxes are grown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,27 +48,25 @@ pub fn split_sweep(sweep: &Sweep, boxes: &[TrackBox], settings: &SplitSettings) 
     let world_from_lidar = RigidMap::from(&sweep.header.world_from_lidar());
     let cloud = &sweep.cloud;
     let filter = PointFilter::new(sweep, settings);
-    let mut drawers = Drawer::in_order_of_claim(boxes, &settings.growth);
+    let mut cabinet = Cabinet::new(boxes, &settings.growth);
     let origins = cloud.origins.iter().map(|origin| world_from_lidar.apply(origin)).collect();
     let mut background = PointCloud::with_origins(origins);
+    background.reserve(cloud.len());
     let mut dropped = DropCounts::default();
     for i in beam_order(cloud) {
         let i = i as usize;
-        let label = match filter.judge(i, &mut dropped) {
-            Some(label) => label,
-            None => continue,
-        };
+        let Some(label) = filter.judge(i, &mut dropped) else { continue };
         let position = world_from_lidar.apply(&cloud.positions[i]);
         let origin = cloud.origin_of[i];
-        match drawers.iter_mut().find_map(|drawer| Some((drawer.claim(&position)?, drawer))) {
-            Some((_, drawer)) if drawer.class.is_none() => dropped.ignored_track += 1,
+        match cabinet.claim(&position) {
+            Some((_, drawer)) if drawer.is_ignored() => dropped.ignored_track += 1,
             Some((in_box, drawer)) => drawer.put(in_box, &background.origins, origin),
             None => background.push(position, label, origin),
         }
     }
     SplitSweep {
         background: BackgroundSweep::new(sweep.header.time, background),
-        objects: drawers.into_iter().filter_map(|drawer| drawer.close(sweep)).collect(),
+        objects: cabinet.close(sweep.header.time),
         dropped,
     }
 }
@@ -88,7 +87,7 @@ impl<'a> PointFilter<'a> {
     /// The label of a point that stays; a point that does not is counted.
     fn judge(&self, i: usize, dropped: &mut DropCounts) -> Option<Option<ClassId>> {
         let (position, origin) = (&self.cloud.positions[i], &self.cloud.origin(i));
-        let reason = if !position.iter().all(|c| c.is_finite()) {
+        let reason = if !is_finite(position) {
             &mut dropped.not_finite
         } else if position == origin {
             &mut dropped.at_origin
@@ -111,76 +110,6 @@ impl<'a> PointFilter<'a> {
         let Some((lower, upper)) = &self.settings.ego_box_m else { return false };
         let p = self.ego_from_lidar.apply(position);
         (0..3).all(|axis| lower[axis] <= p[axis] && p[axis] <= upper[axis])
-    }
-}
-
-/// A track's box and the points put into it so far.
-struct Drawer<'a> {
-    track: TrackId,
-    class: Option<ClassId>,
-    boxed: &'a Box3,
-    grown: GrownBox,
-    centre: Point3<f64>,
-    reach_squared: f64,
-    box_from_world: RigidMap,
-    cloud: PointCloud<ClassId>,
-    /// The sweep's own number of the origin pushed last.
-    last_origin: Option<u32>,
-}
-
-impl<'a> Drawer<'a> {
-    /// All boxes, the one that claims a point before others first: the smallest, then the lower id.
-    fn in_order_of_claim(boxes: &'a [TrackBox], growth: &BoxGrowth) -> Vec<Self> {
-        let mut drawers: Vec<_> = boxes.iter().map(|boxed| Self::new(boxed, growth)).collect();
-        drawers.sort_by(|a, b| {
-            a.boxed.volume().total_cmp(&b.boxed.volume()).then(a.track.cmp(&b.track))
-        });
-        drawers
-    }
-
-    fn new(boxed: &'a TrackBox, growth: &BoxGrowth) -> Self {
-        let grown = GrownBox::new(&boxed.boxed.size_m, growth);
-        let world_from_box = &boxed.boxed.world_from_box;
-        Self {
-            track: boxed.track,
-            class: boxed.class,
-            boxed: &boxed.boxed,
-            grown,
-            centre: world_from_box.translation.vector.into(),
-            reach_squared: (grown.radius() + 1e-6).powi(2),
-            box_from_world: RigidMap::from(&world_from_box.inverse()),
-            cloud: PointCloud::with_origins(Vec::new()),
-            last_origin: None,
-        }
-    }
-
-    /// The point in box coordinates, if it is inside.
-    #[inline]
-    fn claim(&self, position: &Point3<f64>) -> Option<Point3<f64>> {
-        if (position - self.centre).norm_squared() > self.reach_squared {
-            return None;
-        }
-        let in_box = self.box_from_world.apply(position);
-        self.grown.contains(&in_box).then_some(in_box)
-    }
-
-    fn put(&mut self, in_box: Point3<f64>, world_origins: &[Point3<f64>], origin: u32) {
-        let Some(class) = self.class else { return };
-        if self.last_origin != Some(origin) {
-            self.last_origin = Some(origin);
-            let in_world = &world_origins[origin as usize];
-            self.cloud.origins.push(self.box_from_world.apply(in_world));
-        }
-        self.cloud.push(in_box, class, self.cloud.origins.len() as u32 - 1);
-    }
-
-    fn close(self, sweep: &Sweep) -> Option<ObjectSweep> {
-        (!self.cloud.is_empty()).then(|| ObjectSweep {
-            track: self.track,
-            time: sweep.header.time,
-            boxed: self.boxed.clone(),
-            cloud: self.cloud,
-        })
     }
 }
 

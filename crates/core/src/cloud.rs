@@ -31,6 +31,12 @@ pub struct PointCloud<L> {
     pub origins: Vec<Point3<f64>>,
 }
 
+/// Whether a point stands anywhere.
+#[inline]
+pub fn is_finite(position: &Point3<f64>) -> bool {
+    position.x.is_finite() & position.y.is_finite() & position.z.is_finite()
+}
+
 impl<L> PointCloud<L> {
     /// An empty cloud whose points will have come from `origins`.
     pub fn with_origins(origins: Vec<Point3<f64>>) -> Self {
@@ -51,6 +57,13 @@ impl<L> PointCloud<L> {
         Self { positions, labels, origin_of, origins: vec![origin] }
     }
 
+    /// Makes room for so many more points.
+    pub fn reserve(&mut self, points: usize) {
+        self.positions.reserve_exact(points);
+        self.labels.reserve_exact(points);
+        self.origin_of.reserve_exact(points);
+    }
+
     /// How many points there are.
     pub fn len(&self) -> usize {
         self.positions.len()
@@ -62,6 +75,7 @@ impl<L> PointCloud<L> {
     }
 
     /// Adds a point.
+    #[inline]
     pub fn push(&mut self, position: Point3<f64>, label: L, origin: u32) {
         self.positions.push(position);
         self.labels.push(label);

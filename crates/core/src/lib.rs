@@ -45,7 +45,7 @@ pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
 pub use bundles::{BUNDLE, Bundles, Reach};
 pub use camera::Camera;
 pub use class::{ClassId, ClassSet};
-pub use cloud::{PointCloud, PointLabel};
+pub use cloud::{PointCloud, PointLabel, is_finite};
 pub use exposure::{EXPOSURE_WITHIN_S, nearest_exposure};
 pub use fault::{Fault, printable};
 pub use grid::{FAR_LANE, GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};

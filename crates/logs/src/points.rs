@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Point3;
-use occlabel_core::{Fault, SweepHeader};
+use occlabel_core::{Fault, SweepHeader, is_finite};
 
 use crate::files::file_bytes;
 
@@ -15,9 +15,6 @@ pub enum PointColumns {
     /// x, y, z, intensity, ring, as nuScenes has it.
     Five,
 }
-
-/// A ring's number is below this: the largest lidars have 128 beams.
-const RING_LIMIT: f32 = 256.0;
 
 impl PointColumns {
     fn count(self) -> usize {
@@ -65,19 +62,23 @@ pub(crate) fn decode_points(
     Ok((points, warnings))
 }
 
+#[inline]
 fn position(point: &[u8]) -> Point3<f64> {
-    Point3::from([0, 1, 2].map(|column| f64::from(number(point, column))))
+    let metres = |column| f64::from(number(point, column));
+    Point3::new(metres(0), metres(1), metres(2))
 }
 
 /// A column of a point; NaN if the point has no such column.
+#[inline]
 fn number(point: &[u8], column: usize) -> f32 {
     let bytes = point[4 * column..].first_chunk();
     bytes.map_or(f32::NAN, |bytes| f32::from_le_bytes(*bytes))
 }
 
-/// Whether at least half of the points have a small whole number as their fifth.
+/// Whether at least half of the points have a whole number below 256 as their fifth: the largest
+/// lidars have 128 beams.
 fn has_rings(bytes: &[u8]) -> bool {
-    let is_ring = |ring: f32| (0.0..RING_LIMIT).contains(&ring) && ring.fract() == 0.0;
+    let is_ring = |ring: f32| f32::from(ring as u8) == ring;
     let points = bytes.chunks_exact(PointColumns::Five.bytes());
     let all = points.len();
     2 * points.filter(|point| is_ring(number(point, 4))).count() >= all
@@ -99,8 +100,7 @@ fn four_columns(fault: Fault) -> Fault {
 }
 
 fn oddities(points: &[Point3<f64>], file: &str) -> Vec<Fault> {
-    let is_bad = |point: &&Point3<f64>| !point.coords.iter().all(|metres| metres.is_finite());
-    let (bad, all) = (points.iter().filter(is_bad).count(), points.len());
+    let (bad, all) = (points.iter().filter(|point| !is_finite(point)).count(), points.len());
     if all == 0 {
         vec![Fault::new("sweep-empty", file, "points", "none")]
     } else if 2 * bad > all {

@@ -4,6 +4,7 @@ mod clock;
 mod findings;
 mod plan;
 mod planned_scene;
+mod read_ahead;
 mod records;
 mod report;
 mod scene_run;
@@ -12,7 +13,7 @@ mod tally;
 mod workers;
 
 use occlabel_core::Fault;
-use occlabel_labels::{LabelTree, RESUME_DIFFERS, Resume, RunFiles, begin};
+use occlabel_labels::{Begun, LabelTree, RESUME_DIFFERS, Resume, RunFiles, RunRecord, begin};
 
 use crate::args::{LabelArgs, OnError, ResumeArg};
 use crate::console::Console;
@@ -21,8 +22,9 @@ use crate::input::{Opened, open};
 use crate::interrupt::Interrupt;
 use crate::label::findings::Findings;
 use crate::label::plan::Plan;
+use crate::label::read_ahead::while_reading;
 use crate::label::report::{EarlierReport, Report};
-use crate::label::scene_run::SceneRun;
+use crate::label::scene_run::{Finished, SceneRun};
 use crate::progress::Progress;
 use crate::threads::start_threads;
 
@@ -63,20 +65,18 @@ fn label_scenes(
     mut findings: Findings,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Stop> {
-    let files = run_files(job);
     let record = records::run_record(job, plan)?;
-    let earlier = EarlierReport::load(&files.report());
-    let mut begun = begin(&files, &record, resume(job.args.resume)).map_err(usage_if_differs)?;
-    let mut finished = std::mem::take(&mut begun.finished);
-    earlier.recall(&mut finished);
-    warn_of_others(job, &begun.differences, &mut findings);
+    let (mut begun, finished) = begin_run(job, &record, &mut findings)?;
     let progress =
         Progress::new(job.args.progress, job.console, plan.scenes.len(), plan.keyframes());
     let mut report = Report::new();
     let mut entries = Vec::new();
-    for planned in &plan.scenes {
+    for (at, planned) in plan.scenes.iter().enumerate() {
         let run = SceneRun { job, planned, progress: &progress, interrupt };
-        let done = run.label(&finished, &mut begun.journal, &mut findings)?;
+        let next = plan.files_after(at, &finished);
+        let done = while_reading(&job.args.log.input, next, || {
+            run.label(&finished, &mut begun.journal, &mut findings)
+        })?;
         report.add(&planned.name, &done);
         entries.extend(done.entries);
         if interrupt.is_raised() {
@@ -93,6 +93,21 @@ fn label_scenes(
         job.console.result(&report.total_line());
     }
     Ok(outcome)
+}
+
+/// The run, and what earlier ones finished of it.
+fn begin_run(
+    job: &Job,
+    record: &RunRecord,
+    findings: &mut Findings,
+) -> Result<(Begun, Finished), Stop> {
+    let files = run_files(job);
+    let earlier = EarlierReport::load(&files.report());
+    let mut begun = begin(&files, record, resume(job.args.resume)).map_err(usage_if_differs)?;
+    let mut finished = std::mem::take(&mut begun.finished);
+    earlier.recall(&mut finished);
+    warn_of_others(job, &begun.differences, findings);
+    Ok((begun, finished))
 }
 
 /// Tells that keyframes are kept which this configuration or these inputs would not give.

@@ -10,6 +10,7 @@ use crate::exit::Stop;
 use crate::label::Job;
 use crate::label::findings::Findings;
 use crate::label::planned_scene::{PlannedScene, Refused};
+use crate::label::scene_run::Finished;
 
 /// The scenes of a run.
 pub(crate) struct Plan {
@@ -49,6 +50,16 @@ impl Plan {
     /// The files of all sweeps, relative to the log's root, with their sizes.
     pub(crate) fn files(&self) -> impl Iterator<Item = &(String, u64)> {
         self.scenes.iter().flat_map(|scene| &scene.files)
+    }
+
+    /// The files of the scene after that one, if anything of it is left to do.
+    pub(crate) fn files_after(
+        &self,
+        at: usize,
+        finished: &Finished,
+    ) -> impl Iterator<Item = &(String, u64)> + Send {
+        let next = self.scenes.get(at + 1).filter(|next| !next.is_finished(finished));
+        next.into_iter().flat_map(|next| &next.files)
     }
 
     /// `--dry-run`.

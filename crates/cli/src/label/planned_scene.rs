@@ -11,6 +11,7 @@ use occlabel_simulate::World;
 
 use crate::label::Job;
 use crate::label::findings::Findings;
+use crate::label::scene_run::Finished;
 use crate::lacks::lacks;
 
 /// What a ray costs, all stages included: measured with the preset `precise` on 32-beam scenes of 40
@@ -79,6 +80,11 @@ impl PlannedScene {
             sweeps: scene.sweeps.len(),
             points,
         }))
+    }
+
+    /// Whether earlier runs labelled all that is asked for.
+    pub(crate) fn is_finished(&self, finished: &Finished) -> bool {
+        self.wanted.iter().all(|token| finished.contains_key(&(self.name.clone(), token.clone())))
     }
 
     /// One line for `--dry-run`.

@@ -4,15 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene, Timestamp};
-use occlabel_labels::{
-    FileRecord, Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz,
-};
+use occlabel_labels::{Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz};
 use occlabel_pipeline::{LabelOptions, Lenses, aggregate_scene, label_keyframe};
 use serde_json::Value;
 
 use crate::exit::Stop;
 use crate::interrupt::Interrupt;
-use crate::label::clock::StageClock;
+use crate::label::clock::{StageClock, StageTimes};
 use crate::label::findings::Findings;
 use crate::label::planned_scene::PlannedScene;
 use crate::label::sweep_reader::SweepReader;
@@ -49,6 +47,19 @@ struct Bench<'a> {
     journal: Mutex<&'a mut Journal>,
     done: Mutex<SceneDone>,
 }
+
+/// A labelled keyframe that is not on disk yet.
+struct MadeKeyframe {
+    /// In the order of writing.
+    files: Vec<(FileOf, Vec<u8>)>,
+    /// What the journal and the report say of it.
+    summary: Value,
+    rays: u64,
+    times: StageTimes,
+}
+
+/// Where a file of a keyframe stands, by the scene and the token.
+type FileOf = fn(&str, &str) -> Result<TreePath, Fault>;
 
 impl SceneRun<'_> {
     /// Labels what no earlier run finished.
@@ -87,7 +98,9 @@ impl SceneRun<'_> {
         let bench = Bench { scene: &scene, aggregated: &aggregated, lenses, losses, journal, done };
         let is_over = || self.interrupt.is_raised();
         let (at_once, _) = self.planned.at_once;
-        workers::for_each(&todo, at_once, is_over, |keyframe| self.finish(keyframe, &bench))?;
+        let make = |keyframe: &&Keyframe| self.make(keyframe, &bench);
+        let write = |keyframe: &&Keyframe, made| self.finish(keyframe, made, &bench);
+        workers::for_each(&todo, at_once, is_over, make, write)?;
         Ok(bench.done.into_inner().expect("no worker panicked"))
     }
 
@@ -136,50 +149,46 @@ impl SceneRun<'_> {
         Ok(aggregated)
     }
 
-    /// Labels a keyframe, writes it, and notes that it is finished.
-    fn finish(&self, keyframe: &Keyframe, bench: &Bench) -> Result<(), Fault> {
+    /// Labels a keyframe.
+    fn make(&self, keyframe: &Keyframe, bench: &Bench) -> MadeKeyframe {
         let (mut clock, (_, shards)) = (StageClock::start(), self.planned.at_once);
         let rules = &self.job.opened.rules;
+        let enter = |stage| clock.enter(stage);
         let options = LabelOptions { evidence: self.job.args.evidence, shards };
-        let labelled = label_keyframe(
-            bench.scene,
-            bench.aggregated,
-            &bench.lenses,
-            keyframe,
-            rules,
-            &options,
-            |stage| {
-                clock.enter(stage);
-            },
-        );
-        let entry = JournalEntry {
-            scene: bench.scene.name.clone(),
-            keyframe: keyframe.token.clone(),
-            files: self.write(keyframe, &labelled.labels)?,
+        let Bench { scene, aggregated, lenses, .. } = bench;
+        let labelled = label_keyframe(scene, aggregated, lenses, keyframe, rules, &options, enter);
+        MadeKeyframe {
+            files: self.files(&labelled.labels),
             summary: bench.summary(&labelled.labels),
+            rays: labelled.rays,
+            times: clock.stop(),
+        }
+    }
+
+    fn files(&self, labels: &OccupancyLabels) -> Vec<(FileOf, Vec<u8>)> {
+        let evidence = labels.evidence.as_ref().map(evidence_npz);
+        let evidence = evidence.map(|bytes| (TreePath::evidence as FileOf, bytes));
+        evidence.into_iter().chain([(TreePath::labels as FileOf, labels_npz(labels))]).collect()
+    }
+
+    /// Writes a keyframe, and notes that it is finished.
+    fn finish(&self, keyframe: &Keyframe, made: MadeKeyframe, bench: &Bench) -> Result<(), Fault> {
+        let (scene, token) = (&self.planned.name, &keyframe.token);
+        let write =
+            |(path, bytes): (FileOf, Vec<u8>)| self.job.tree.write(&path(scene, token)?, &bytes);
+        let entry = JournalEntry {
+            scene: scene.clone(),
+            keyframe: token.clone(),
+            files: made.files.into_iter().map(write).collect::<Result<_, Fault>>()?,
+            summary: made.summary,
         };
         bench.journal.lock().expect("no worker panicked").append(&entry)?;
         let mut done = bench.done.lock().expect("no worker panicked");
         done.keep(&entry);
-        done.tally.rays += labelled.rays;
-        done.tally.times.add(&clock.stop());
-        self.progress.keyframe(&entry.scene, &entry.keyframe, labelled.rays);
+        done.tally.rays += made.rays;
+        done.tally.times.add(&made.times);
+        self.progress.keyframe(scene, token, made.rays);
         Ok(())
-    }
-
-    fn write(
-        &self,
-        keyframe: &Keyframe,
-        labels: &OccupancyLabels,
-    ) -> Result<Vec<FileRecord>, Fault> {
-        let (tree, scene, token) = (&self.job.tree, &self.planned.name, &keyframe.token);
-        let mut files = Vec::new();
-        if let Some(evidence) = &labels.evidence {
-            let bytes = evidence_npz(evidence);
-            files.push(tree.write(&TreePath::evidence(scene, token)?, &bytes)?);
-        }
-        files.push(tree.write(&TreePath::labels(scene, token)?, &labels_npz(labels))?);
-        Ok(files)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-use occlabel_core::{Fault, Keyframe, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_core::{Fault, Keyframe, PointCloud, PointLabel, Scene, SweepHeader, is_finite};
 
 use crate::label::Job;
 use crate::label::findings::Findings;
@@ -99,6 +99,5 @@ impl Book {
 }
 
 fn count_not_finite(cloud: &PointCloud<PointLabel>) -> usize {
-    let is_finite = |i: &usize| cloud.positions[*i].iter().all(|c| c.is_finite());
-    cloud.len() - (0..cloud.len()).filter(is_finite).count()
+    cloud.positions.iter().filter(|position| !is_finite(position)).count()
 }
