@@ -1,6 +1,6 @@
 //! Rigid transforms, always bound to a `dst_from_src` name.
 
-use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
 /// A rigid transform. `let p_dst = dst_from_src * p_src;`
 pub type Pose = Isometry3<f64>;
@@ -60,7 +60,6 @@ impl RigidMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
 
     fn yaw(angle: f64) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle)
