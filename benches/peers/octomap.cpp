@@ -52,6 +52,19 @@ void insert(octomap::OcTree& tree, const std::vector<Sweep>& sweeps, bool discre
     }
 }
 
+void insert_into_new(const std::string& name, const std::vector<Sweep>& sweeps, std::size_t rays,
+                     bool discretize) {
+    octomap::OcTree tree(kVoxelM);
+    measure(name.c_str(), "ray", rays, [&] { insert(tree, sweeps, discretize); });
+    std::size_t free = 0, hit = 0;
+    tree.expand();
+    for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+        ++(tree.isNodeOccupied(*leaf) ? hit : free);
+    }
+    tell(name + ": free", "voxels", free);
+    tell(name + ": hit", "voxels", hit);
+}
+
 std::size_t all_keys(octomap::OcTree& tree, const std::vector<Sweep>& sweeps) {
     octomap::KeyRay keys;
     std::size_t count = 0;
@@ -71,16 +84,10 @@ int main(int, char** arguments) {
     std::size_t rays = 0;
     for (const auto& sweep : sweeps) rays += sweep.ends.size();
 
-    octomap::OcTree tree(kVoxelM);
-    measure("rays, OctoMap discretize", "ray", rays, [&] { insert(tree, sweeps, true); });
-    std::size_t free = 0, hit = 0;
-    tree.expand();
-    for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
-        ++(tree.isNodeOccupied(*leaf) ? hit : free);
-    }
-    tell("rays, OctoMap discretize: free", "voxels", free);
-    tell("rays, OctoMap discretize: hit", "voxels", hit);
+    insert_into_new("rays, OctoMap discretize", sweeps, rays, true);
+    insert_into_new("rays, OctoMap", sweeps, rays, false);
 
+    octomap::OcTree tree(kVoxelM);
     std::size_t keys = 0;
     measure("rays, OctoMap computeRayKeys", "ray", rays, [&] { keys = all_keys(tree, sweeps); });
     tell("rays, OctoMap computeRayKeys: visits, grid or not", "visits a ray", double(keys) / rays);

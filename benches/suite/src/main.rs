@@ -20,6 +20,7 @@ mod clock;
 mod export;
 mod exported;
 mod keyframe;
+mod keyframe_stages;
 mod label_run;
 mod peer;
 mod row;

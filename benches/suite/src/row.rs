@@ -89,6 +89,6 @@ impl fmt::Display for Row {
         sorted.sort_by(f64::total_cmp);
         let (least, most) = (sorted[0], sorted[sorted.len() - 1]);
         let median = sorted[sorted.len() / 2];
-        write!(f, "{name:<36} {median:>11.3} ns/{unit:<12} ({least:.3} to {most:.3}), {count} each")
+        write!(f, "{name:<36} {median:>11.3} ns/{unit:<16} ({least:.3} to {most:.3}), {count} each")
     }
 }

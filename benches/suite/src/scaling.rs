@@ -25,7 +25,7 @@ const LONG_ROAD: [&str; 6] = [
     "mover.*.repeat.count=140",
     "keyframe_hz=0.5",
     "lidar.LIDAR_TOP.rate_hz=10",
-    "lidar.LIDAR_TOP.pattern.spinning.azimuths=90",
+    "lidar.LIDAR_TOP.pattern.spinning.azimuths=48",
     "lidar.LIDAR_TOP.pattern.spinning.beams.even.count=16",
 ];
 

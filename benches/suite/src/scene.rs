@@ -14,7 +14,10 @@ const THREADS: [usize; 2] = [1, 2];
 /// `scene [PRESET...]`: all presets if none is named.
 pub(crate) fn run(args: &Args) {
     let log = log_of(&args.world, &[]);
-    let rays = OpenLog::open(&args.world, &[]).ray_count();
+    let opened = OpenLog::open(&args.world, &[]);
+    let rays = opened.ray_count();
+    let keyframes = opened.scene.keyframes.len();
+    tell("scene", &format!("{}, keyframes", args.world), "keyframes", keyframes as f64);
     let presets: Vec<&str> = match args.rest.as_slice() {
         [] => PRESETS.to_vec(),
         named => named.iter().map(String::as_str).collect(),
