@@ -5,6 +5,7 @@
 
 import json
 import pathlib
+import re
 import statistics
 import sys
 
@@ -36,15 +37,34 @@ def main():
 def tables(run):
     machine = run["machine"]
     head = f"Commit {run['commit']}, {run['date']}, {machine['processor']}, {machine['cores']} cores, {run['compiler']}.\n"
-    parts = [head, plain(run, "stages", "Stages"), plain(run, "scaling", "Scaling"), scenes(run)]
-    return "\n".join(parts + [peers(run, job, title) for job, title in JOBS if ours(run, job)])
+    parts = [head, stages(run), scaling(run), scenes(run)]
+    parts += [peers(run, job, title) for job, title in JOBS if ours(run, job)]
+    return "\n".join(parts + [whole_scene(run)])
 
 
-def plain(run, bench, title):
-    lines = [f"| {title} | a unit is a | CPU ns a unit | least to most |", "|---|---|---|---|"]
-    for row in of(run, bench):
+def stages(run):
+    lines = ["| Stages | a unit is a | CPU ns a unit | least to most |", "|---|---|---|---|"]
+    for row in of(run, "stages"):
         lines.append(f"| {row['name']} | {row['unit']} | {number(middle(row))} | {spread(row)} |")
     return "\n".join(lines) + "\n"
+
+
+def scaling(run):
+    """Each row beside the one before of its kind: names that differ in numbers alone."""
+    lines = ["| Scaling | a unit is a | CPU ns a unit | least to most | units, to the row before | CPU, to the row before |", "|---|---|---|---|---|---|"]
+    before = {}
+    for row in of(run, "scaling"):
+        kind = re.sub(r"[0-9.]+", "#", row["name"])
+        growth = grown(before[kind], row) if kind in before else " | "
+        before[kind] = row
+        lines.append(f"| {row['name']} | {row['unit']} | {number(middle(row))} | {spread(row)} | {growth} |")
+    return "\n".join(lines) + "\n"
+
+
+def grown(before, row):
+    cpu = statistics.median(b / a for a, b in zip(before["cpu_ns"], row["cpu_ns"]))
+    units = row["count"] / before["count"]
+    return f"{units:.2f} | {cpu * units:.2f}"
 
 
 def scenes(run):
@@ -68,6 +88,24 @@ def peers(run, job, title):
         times = f"{ratio(run, job, row):.1f}" if comparable(run, job, row) else ""
         lines.append(f"| {short(row)} | {row['unit']} | {number(middle(row))} | {spread(row)} | {times} | {outcome(run, row)} |")
     return "\n".join(lines) + "\n"
+
+
+def whole_scene(run):
+    """Everything that the scripts of numba, NumPy and scikit-learn do for a scene, against `label`."""
+    label = find(run, "scene", "nuscenes_like, precise, 1 threads")
+    queries = find(run, "stages", "relabel")["count"]
+    keyframes = value(run, "nuscenes_like, keyframes")
+    index, search = (find(run, "peers", f"neighbours, scikit-learn{part}") for part in (": index", ""))
+    script = keyframes * total(find(run, "peers", "keyframe, numba + NumPy")) + total(index) + queries * middle(search)
+    return (
+        f"A whole scene: numba, NumPy and scikit-learn, {keyframes:.0f} keyframes and the neighbours of "
+        f"{queries / 1e6:.1f} million points added up, without boxes and without reading and writing files, "
+        f"take {script / total(label):.1f} times the CPU time of `label` with all that.\n"
+    )
+
+
+def total(row):
+    return middle(row) * row["count"]
 
 
 def ratio(run, job, row):
@@ -135,7 +173,8 @@ def plot(run, place):
         for at, x in enumerate(ratios):
             axis.text(x * 1.05, at, f"{x:.1f}", va="center", fontsize=9)
     axes[-1].set_xlabel("CPU time, ours = 1")
-    axes[-1].set_xlim(0.5, 3 * max(x for job, _ in jobs for _, x in bars(run, job)))
+    shown = [x for job, _ in jobs for _, x in bars(run, job)]
+    axes[-1].set_xlim(0.7 * min(shown), 2 * max(shown))
     figure.tight_layout()
     figure.savefig(place, metadata={"Date": None})
 

@@ -101,9 +101,14 @@ impl Ready {
         let case = |keyframes: usize| {
             let label = move || self.label(keyframes);
             let name = format!("label_keyframe, {keyframes} keyframes");
-            Case::new(name, "keyframe", keyframes as u64, move || cost_of(label))
+            Case::new(name, "ray", self.rays() * keyframes as u64, move || cost_of(label))
         };
         KEYFRAME_COUNTS.map(case).into()
+    }
+
+    /// How many there are in the scene.
+    fn rays(&self) -> u64 {
+        self.log.ray_count()
     }
 
     /// Labels keyframes spread over the drive.
@@ -128,10 +133,10 @@ impl Ready {
             drop(relabel(sorted(log, rules), &rules.relabel(&log.scene)));
             self.label(log.scene.keyframes.len());
         };
-        let (name, seconds) = (format!("a drive of {duration_s} s"), u64::from(duration_s));
+        let (name, rays) = (format!("a drive of {duration_s} s"), self.rays());
         [
-            Case::new(format!("rays, {name}"), "s of drive", seconds, move || cost_of(cast)),
-            Case::new(format!("everything, {name}"), "s of drive", seconds, move || cost_of(all)),
+            Case::new(format!("rays, {name}"), "ray", rays, move || cost_of(cast)),
+            Case::new(format!("everything, {name}"), "ray", rays, move || cost_of(all)),
         ]
     }
 }
