@@ -30,7 +30,6 @@ pub(crate) const STAGES: &[Stage] = &[
     Stage { name: "cameras-precise", watched: "cameras", run: || cameras("precise") },
     Stage { name: "cameras-occ3d-nuscenes", watched: "cameras", run: || cameras("occ3d-nuscenes") },
     Stage { name: "keyframe", watched: "keyframe", run: keyframe },
-    Stage { name: "npz", watched: "npz", run: npz },
 ];
 
 fn split() {
@@ -77,10 +76,4 @@ fn cameras(preset: &str) {
 fn keyframe() {
     let prepared = Prepared::new("precise");
     black_box(watched::keyframe(&prepared, &prepared.aggregated()));
-}
-
-fn npz() {
-    let prepared = Prepared::new("precise");
-    let labelled = watched::keyframe(&prepared, &prepared.aggregated());
-    black_box(watched::npz(&labelled.labels));
 }

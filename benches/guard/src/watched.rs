@@ -2,9 +2,7 @@
 
 use occlabel_aggregate::{SplitSweep, TrackBox, split_sweep};
 use occlabel_annotate::RelabelSettings;
-use occlabel_core::{
-    AggregatedScene, ClassId, Instant, OccupancyLabels, RayCounts, Sweep, VoxelGrid, VoxelVote,
-};
+use occlabel_core::{AggregatedScene, ClassId, Instant, RayCounts, Sweep, VoxelGrid, VoxelVote};
 use occlabel_occlusion::{Eye, Matter};
 use occlabel_pipeline::{LabelledKeyframe, Rules, label_keyframe};
 use occlabel_raycast::count;
@@ -46,9 +44,4 @@ pub(crate) fn keyframe(
 ) -> LabelledKeyframe {
     let Prepared { drive, rules } = prepared;
     label_keyframe(&drive.scene, aggregated, prepared.keyframe(), rules, 1, |_| {})
-}
-
-#[inline(never)]
-pub(crate) fn npz(labels: &OccupancyLabels) -> Vec<u8> {
-    occlabel_labels::labels_npz(labels)
 }
