@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 /// Where the counts stand that the guard holds to.
 const EXPECTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/expected.json");
-/// A count may differ by this much, as a share.
-const SLACK: f64 = 0.02;
+/// A count may differ by so many hundredths.
+const SLACK_PERCENT: u64 = 2;
 
 /// Instructions a stage, and with what they were counted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -86,7 +86,14 @@ impl Verdict {
 
     /// Whether the stage costs more than it may, or nobody said what it may.
     pub(crate) fn is_too_much(&self) -> bool {
-        self.excess().is_none_or(|excess| excess > SLACK)
+        let most = |expected: u64| expected * (100 + SLACK_PERCENT);
+        self.expected.is_none_or(|expected| self.counted * 100 > most(expected))
+    }
+
+    /// Whether it costs so much less that a stage could lose again what was won.
+    fn is_better(&self) -> bool {
+        let least = |expected: u64| expected * (100 - SLACK_PERCENT);
+        self.expected.is_some_and(|expected| self.counted * 100 < least(expected))
     }
 }
 
@@ -94,14 +101,14 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { stage, counted, .. } = self;
         let Some(excess) = self.excess() else {
-            return write!(f, "{stage:<20} {counted:>13}  FAILED: not in expected.json; --pin");
+            return write!(f, "{stage:<22} {counted:>13}  FAILED: not in expected.json; --pin");
         };
-        let word = match excess {
-            _ if excess > SLACK => "  FAILED: more than 2 % above",
-            _ if excess < -SLACK => "  better: pin it with benches/guard/run --pin",
+        let word = match self {
+            _ if self.is_too_much() => "  FAILED: more than 2 % above",
+            _ if self.is_better() => "  better: pin it with benches/guard/run --pin",
             _ => "",
         };
-        write!(f, "{stage:<20} {counted:>13} instructions {:>+7.2} %{word}", 100.0 * excess)
+        write!(f, "{stage:<22} {counted:>13} instructions {:>+7.2} %{word}", 100.0 * excess)
     }
 }
 
