@@ -1,0 +1,47 @@
+//! What callgrind watches: it counts while one of these runs. Each calls one stage, and nothing else.
+
+use occlabel_aggregate::{SplitSweep, TrackBox, split_sweep};
+use occlabel_annotate::RelabelSettings;
+use occlabel_core::{AggregatedScene, ClassId, Instant, RayCounts, Sweep, VoxelGrid, VoxelVote};
+use occlabel_occlusion::{Eye, Matter};
+use occlabel_pipeline::{LabelledKeyframe, Rules, label_keyframe};
+use occlabel_raycast::count;
+
+use crate::prepared::Prepared;
+
+#[inline(never)]
+pub(crate) fn split(sweeps: &[(Sweep, Vec<TrackBox>)], rules: &Rules) -> Vec<SplitSweep> {
+    sweeps.iter().map(|(sweep, boxes)| split_sweep(sweep, boxes, &rules.split)).collect()
+}
+
+#[inline(never)]
+pub(crate) fn relabel(
+    scene: AggregatedScene<Option<ClassId>>,
+    settings: &RelabelSettings,
+) -> AggregatedScene<ClassId> {
+    occlabel_annotate::relabel(scene, settings)
+}
+
+#[inline(never)]
+pub(crate) fn voxelize(instant: &Instant, rules: &Rules) -> VoxelGrid<Option<VoxelVote>> {
+    occlabel_voxelize::voxelize(instant, &rules.spec, &rules.votes())
+}
+
+#[inline(never)]
+pub(crate) fn rays(instant: &Instant, rules: &Rules) -> RayCounts {
+    count(instant, &rules.spec, &rules.rays(), 1)
+}
+
+#[inline(never)]
+pub(crate) fn cameras(eyes: &[Eye], matter: &VoxelGrid<Matter>, rules: &Rules) -> VoxelGrid<u16> {
+    occlabel_occlusion::visible(eyes, &Lenses::default(), &rules.spec, matter, &rules.occlusion)
+}
+
+#[inline(never)]
+pub(crate) fn keyframe(
+    prepared: &Prepared,
+    aggregated: &AggregatedScene<ClassId>,
+) -> LabelledKeyframe {
+    let Prepared { drive, rules } = prepared;
+    label_keyframe(&drive.scene, aggregated, &Lenses::default(), prepared.keyframe(), rules, &LabelOptions::labels(1), |_| {})
+}

@@ -1,0 +1,70 @@
+//! A keyframe, stage by stage.
+
+use nalgebra::Point3;
+use occlabel_aggregate::{Moment, TrackBox, compose};
+use occlabel_annotate::{BoxSource, box_at};
+use occlabel_core::{
+    AggregatedScene, BoxTrack, ClassId, GridSpec, Instant, Keyframe, Scene, VoxelGrid, walk,
+};
+use occlabel_occlusion::{Eye, Matter, matter};
+use occlabel_pipeline::Rules;
+use occlabel_raycast::{classify, count};
+use occlabel_voxelize::voxelize;
+
+/// The keyframe's instant.
+pub(crate) fn instant<'a>(
+    scene: &Scene,
+    aggregated: &'a AggregatedScene<ClassId>,
+    keyframe: &Keyframe,
+    rules: &Rules,
+) -> Instant<'a> {
+    let reference = scene.reference_sweep(keyframe);
+    let grid_from_world = rules.world_from_grid(reference).inverse();
+    let stands = |track: &BoxTrack| {
+        let (boxed, source) = box_at(track, keyframe.time, &rules.boxes)?;
+        let standing = TrackBox { track: track.id, class: track.class(), boxed };
+        (source != BoxSource::Extrapolated).then_some(standing)
+    };
+    let moment = Moment {
+        time: keyframe.time,
+        grid_from_world,
+        reference_lidar: grid_from_world * reference.world_from_lidar() * Point3::origin(),
+        standing: &scene.tracks.iter().filter_map(stands).collect::<Vec<_>>(),
+    };
+    compose(aggregated, &moment, &rules.window)
+}
+
+/// What stops the sight of cameras.
+pub(crate) fn matter_at(instant: &Instant, rules: &Rules) -> VoxelGrid<Matter> {
+    let ground = &rules.taxonomy.flat;
+    let votes = voxelize(instant, &rules.spec, &rules.votes());
+    let counts = count(instant, &rules.spec, &rules.rays(), 1);
+    matter(&classify(&counts, &votes, ground, &rules.states), &votes, ground)
+}
+
+/// The keyframe's cameras.
+pub(crate) fn eyes<'a>(scene: &'a Scene, keyframe: &Keyframe, instant: &Instant) -> Vec<Eye<'a>> {
+    let eye = |exposure: &occlabel_core::Exposure| Eye {
+        bit: exposure.camera,
+        camera: &scene.cameras[exposure.camera].camera,
+        grid_from_camera: instant.grid_from_world * exposure.world_from_camera,
+    };
+    keyframe.exposures.iter().map(eye).collect()
+}
+
+/// How often rays of the background enter a voxel of the grid, hits included.
+pub(crate) fn visits(instant: &Instant, spec: &GridSpec) -> u64 {
+    let mut visits = 0;
+    for sweep in &instant.background {
+        for (i, position) in sweep.cloud.positions.iter().enumerate() {
+            let end = spec.snap(&(instant.grid_from_world * position));
+            let origin = spec.snap(&(instant.grid_from_world * sweep.cloud.origin(i)));
+            visits += u64::from(spec.flat(end.voxel()).is_some());
+            walk(spec, end, origin, |_, _| {
+                visits += 1;
+                std::ops::ControlFlow::Continue(())
+            });
+        }
+    }
+    visits
+}
