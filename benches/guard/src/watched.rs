@@ -43,5 +43,13 @@ pub(crate) fn keyframe(
     aggregated: &AggregatedScene<ClassId>,
 ) -> LabelledKeyframe {
     let Prepared { drive, rules } = prepared;
-    label_keyframe(&drive.scene, aggregated, &Lenses::default(), prepared.keyframe(), rules, &LabelOptions::labels(1), |_| {})
+    label_keyframe(
+        &drive.scene,
+        aggregated,
+        &Lenses::default(),
+        prepared.keyframe(),
+        rules,
+        &LabelOptions::labels(1),
+        |_| {},
+    )
 }

@@ -60,8 +60,14 @@ impl GrownBox {
         (0..3).all(|axis| self.lower[axis] <= p[axis] && p[axis] <= self.upper[axis])
     }
 
+    /// Lower and upper corner.
+    pub fn corners(&self) -> (Point3<f64>, Point3<f64>) {
+        (self.lower, self.upper)
+    }
+
     /// Where the straight way from `origin` to `point`, which is inside, enters: `origin` itself if
     /// that is inside. Box coordinates.
+    #[inline(always)]
     pub fn entry(&self, origin: &Point3<f64>, point: &Point3<f64>) -> Point3<f64> {
         let way = point - origin;
         let mut latest = 0.0_f64;

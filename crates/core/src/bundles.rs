@@ -7,6 +7,9 @@ use crate::{GridSpec, RigidMap};
 /// How many points are taken together.
 pub const BUNDLE: usize = 16;
 
+/// By how much boxes are taken too large, against rounding, voxels.
+const SPARE_VOXELS: f64 = 1e-3;
+
 /// Boxes around each [`BUNDLE`] points of a cloud, in their order. The last may hold fewer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bundles(Vec<Bounds>);
@@ -35,11 +38,7 @@ impl Bundles {
     #[inline]
     pub fn reach(&self, start: usize, spec: &GridSpec, place: &RigidMap) -> Reach {
         let Bounds { low, high } = self.0[start / BUNDLE];
-        let (low, high) = (Vector3::from(low.map(f64::from)), Vector3::from(high.map(f64::from)));
-        let centre = spec.to_voxel_units(&place.apply(&Point3::from((low + high) * 0.5)));
-        let half = place.spread(&((high - low) * 0.5)).component_div(&spec.size_m());
-        let half = half + Vector3::repeat(1e-3);
-        Reach { low: centre - half, high: centre + half }
+        Reach::of_box(&low.map(f64::from).into(), &high.map(f64::from).into(), spec, place)
     }
 }
 
@@ -57,18 +56,33 @@ impl Bounds {
 }
 
 impl Reach {
+    /// Of a box by its corners, where `place` brings it.
+    #[inline]
+    pub fn of_box(
+        low: &Point3<f64>,
+        high: &Point3<f64>,
+        spec: &GridSpec,
+        place: &RigidMap,
+    ) -> Self {
+        let middle = Point3::from((low.coords + high.coords) * 0.5);
+        let centre = spec.to_voxel_units(&place.apply(&middle));
+        let half = place.spread(&((high - low) * 0.5)).component_div(&spec.size_m());
+        let half = half + Vector3::repeat(SPARE_VOXELS);
+        Self { low: centre - half, high: centre + half }
+    }
+
     /// Grown to hold a point of the grid frame too.
     #[inline]
     pub fn with(self, point: &Point3<f64>, spec: &GridSpec) -> Self {
-        let point = spec.to_voxel_units(point);
-        Self { low: self.low.inf(&point), high: self.high.sup(&point) }
+        let (point, spare) = (spec.to_voxel_units(point), Vector3::repeat(SPARE_VOXELS));
+        Self { low: self.low.inf(&(point - spare)), high: self.high.sup(&(point + spare)) }
     }
 
     /// Whether some of it may lie in the grid.
     #[inline]
     pub fn meets(&self, spec: &GridSpec) -> bool {
         let shape = spec.shape();
-        (0..3).all(|axis| self.high[axis] >= -1e-3 && self.low[axis] <= shape[axis] as f64 + 1e-3)
+        (0..3).all(|axis| self.high[axis] >= 0.0 && self.low[axis] <= shape[axis] as f64)
     }
 }
 

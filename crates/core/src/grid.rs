@@ -241,7 +241,9 @@ impl GridSpec {
 #[inline]
 fn snap_axis(u: f64) -> i64 {
     const FAR: f64 = (1_i64 << 60) as f64;
-    2 * (u * (LATTICE / 2) as f64).floor().clamp(-FAR, FAR) as i64 + 1
+    let half = (u * (LATTICE / 2) as f64).clamp(-FAR, FAR);
+    let cut = half as i64;
+    2 * (cut - i64::from(cut as f64 > half)) + 1
 }
 
 /// How near to a lattice point's limit a product may be taken for a quotient: for coordinates below

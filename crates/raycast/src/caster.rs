@@ -102,6 +102,16 @@ impl<'a, C: Cell> Caster<'a, C> {
             && (self.near_steps.is_some() || !self.near.are_any())
     }
 
+    /// Whether parts of rays can be cast in batches: no rule speaks of the whole rays' ends.
+    pub(crate) fn takes_parts(&self) -> bool {
+        self.takes_batches() && !self.near.are_any()
+    }
+
+    /// Voxels along each axis.
+    pub(crate) fn shape(&self) -> [i32; 3] {
+        self.shape
+    }
+
     /// Counts the hit of a point alone.
     pub(crate) fn hit(&mut self, voxel: VoxelIndex) {
         if let Some(flat) = self.spec.flat(voxel) {
@@ -117,7 +127,7 @@ impl<'a, C: Cell> Caster<'a, C> {
         if !self.clips && self.spec.flat(ray.ends.point).is_none() {
             return;
         }
-        if self.near.are_any() || !self.takes_batches() || !fits(ray.end, ray.origin) {
+        if !self.takes_parts() || !fits(ray.end, ray.origin) {
             return self.cast_alone(ray);
         }
         self.waiting.put(self.waiting_len, ray.end, ray.origin);
@@ -149,14 +159,26 @@ impl<'a, C: Cell> Caster<'a, C> {
         if !any(&inside) {
             return;
         }
+        self.count_hits(batch, &inside);
+        match self.near_steps {
+            Some(near) => self.cast_inside::<true>(batch, Some(near)),
+            None => self.cast_inside::<false>(batch, None),
+        }
+    }
+
+    /// Counts the hits of rays alone.
+    #[inline(always)]
+    pub(crate) fn hit_batch(&mut self, batch: &Batch) {
+        let inside = batch.ends_inside(self.shape);
+        self.count_hits(batch, &inside);
+    }
+
+    #[inline(always)]
+    fn count_hits(&mut self, batch: &Batch, inside: &Lane) {
         for lane in 0..LANES {
             if inside[lane] != 0 {
                 self.hits.values_mut()[batch.end_flat(lane, self.strides)] += 1;
             }
-        }
-        match self.near_steps {
-            Some(near) => self.cast_inside::<true>(batch, Some(near)),
-            None => self.cast_inside::<false>(batch, None),
         }
     }
 
@@ -196,19 +218,31 @@ impl<'a, C: Cell> Caster<'a, C> {
         walk_lanes::<C, RULED>(&ways, walks, self.strides, &mut self.cells);
     }
 
-    /// Counts the crossings of rays that begin and end anywhere.
+    /// Counts the crossings of parts of rays that begin and end anywhere.
+    #[inline(always)]
+    pub(crate) fn cast_anywhere(&mut self, batch: &Batch) {
+        if any(&batch.may_pass(self.shape)) {
+            self.walk_anywhere(batch);
+        }
+    }
+
     #[inline(always)]
     fn cast_waiting(&mut self) {
-        let ways = Ways::new(&self.waiting);
+        let waiting = std::mem::replace(&mut self.waiting, Batch::empty());
+        self.waiting_len = 0;
+        self.walk_anywhere(&waiting);
+    }
+
+    #[inline(always)]
+    fn walk_anywhere(&mut self, batch: &Batch) {
+        let ways = Ways::new(batch);
         let total = ways.faces_before(&[PARTS; LANES]);
         let from = ways.faces_before(&ways.part_before_grid(self.shape));
         let mut walks = Walks::new(&ways, from, &total, self.shape);
         if let Some(near) = self.near_steps {
-            near.apply(&mut walks, &total, &self.waiting.flat);
+            near.apply(&mut walks, &total, &batch.flat);
         }
         walk_lanes::<C, true>(&ways, walks, self.strides, &mut self.cells);
-        self.waiting = Batch::empty();
-        self.waiting_len = 0;
     }
 }
 

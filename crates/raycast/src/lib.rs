@@ -39,6 +39,7 @@ mod cells;
 mod classify;
 mod count;
 mod near;
+mod object_rays;
 mod settings;
 mod sweep_rays;
 mod walkers;

@@ -2,15 +2,13 @@
 
 use std::ops::Range;
 
-use occlabel_core::{
-    BackgroundSweep, ClassId, GridSpec, Instant, LatticePoint, PlacedObject, Pose, RigidMap,
-};
+use occlabel_core::{BackgroundSweep, ClassId, GridSpec, Instant, PlacedObject, Pose, RigidMap};
 
-use crate::caster::{Caster, Ray};
+use crate::caster::Caster;
 use crate::cells::Cell;
-use crate::near::RayEnds;
+use crate::object_rays::ObjectRays;
 use crate::sweep_rays::SweepRays;
-use crate::{ObjectRays, RayRules};
+use crate::{ObjectRays as Which, RayRules};
 
 /// Points of a piece of work: enough to repay a thread, few enough to share out evenly.
 const POINTS_A_PIECE: usize = 4096;
@@ -38,16 +36,16 @@ enum Kind<'a> {
 
 impl<'a> Work<'a> {
     /// All rays of an instant.
-    pub(crate) fn of(instant: &'a Instant<'a>, object_rays: ObjectRays) -> Vec<Self> {
+    pub(crate) fn of(instant: &'a Instant<'a>, object_rays: Which) -> Vec<Self> {
         let background = instant.background.iter().map(|sweep| Kind::Background(sweep));
         let objects = instant.objects.iter().flat_map(|placed| {
             let now = placed.grid_from_box;
             let (first, second) = match object_rays {
-                ObjectRays::Own => {
+                Which::Own => {
                     (now.map(|pose| Kind::ObjectPart(placed, pose)), Some(Kind::WorldPart(placed)))
                 }
-                ObjectRays::Current => (now.map(|pose| Kind::Current(placed, pose)), None),
-                ObjectRays::Hits => (now.map(|pose| Kind::Hits(placed, pose)), None),
+                Which::Current => (now.map(|pose| Kind::Current(placed, pose)), None),
+                Which::Hits => (now.map(|pose| Kind::Hits(placed, pose)), None),
             };
             first.into_iter().chain(second)
         });
@@ -79,23 +77,20 @@ impl<'a> Work<'a> {
                 SweepRays { sweep, place, spec, flat: rules.flat }.cast(points, caster);
             }
             Kind::ObjectPart(placed, pose) => {
-                let place = RigidMap::from(&pose);
-                points.for_each(|i| caster.cast(&object_part(placed, i, &place, spec, rules)));
+                ObjectRays::new(placed, &pose, spec, rules).cast_object_parts(points, caster);
             }
             Kind::WorldPart(placed) => {
-                let place = RigidMap::from(&placed.grid_from_seen_box);
-                points
-                    .filter_map(|i| world_part(placed, i, &place, spec, rules))
-                    .for_each(|ray| caster.cast(&ray));
+                let pose = placed.grid_from_seen_box;
+                ObjectRays::new(placed, &pose, spec, rules).cast_world_parts(points, caster);
             }
             Kind::Current(placed, pose) => {
-                let (place, lidar) = (RigidMap::from(&pose), spec.snap(&instant.reference_lidar));
-                points
-                    .for_each(|i| caster.cast(&current_ray(placed, i, &place, lidar, spec, rules)));
+                let (rays, lidar) =
+                    (ObjectRays::new(placed, &pose, spec, rules), &instant.reference_lidar);
+                points.for_each(|i| caster.cast(&rays.from_lidar(i, lidar)));
             }
             Kind::Hits(placed, pose) => {
-                let place = RigidMap::from(&pose);
-                points.for_each(|i| caster.hit(snapped_point(placed, i, &place, spec).voxel()));
+                let rays = ObjectRays::new(placed, &pose, spec, rules);
+                points.for_each(|i| caster.hit(rays.end(i).voxel()));
             }
         }
     }
@@ -118,74 +113,4 @@ impl<'a> Kind<'a> {
             .step_by(POINTS_A_PIECE)
             .map(move |start| Work { kind: self, points: start..len.min(start + POINTS_A_PIECE) })
     }
-}
-
-fn snapped_point(
-    placed: &PlacedObject,
-    i: usize,
-    place: &RigidMap,
-    spec: &GridSpec,
-) -> LatticePoint {
-    spec.snap(&place.apply(&placed.object.cloud.positions[i]))
-}
-
-fn current_ray(
-    placed: &PlacedObject,
-    i: usize,
-    place: &RigidMap,
-    lidar: LatticePoint,
-    spec: &GridSpec,
-    rules: &RayRules,
-) -> Ray {
-    let is_flat = rules.flat.contains(placed.object.cloud.labels[i]);
-    Ray::whole(snapped_point(placed, i, place, spec), lidar, is_flat)
-}
-
-/// `origin ----- world part ----- entry --- object part --- point`: the part after the entry.
-fn object_part(
-    placed: &PlacedObject,
-    i: usize,
-    place: &RigidMap,
-    spec: &GridSpec,
-    rules: &RayRules,
-) -> Ray {
-    let (point, origin) = (placed.object.cloud.positions[i], placed.object.origin(i));
-    let entry = placed.seen.entry(&origin, &point);
-    let end = spec.snap(&place.apply(&point));
-    Ray {
-        end,
-        origin: spec.snap(&place.apply(&entry)),
-        hits: true,
-        ends: RayEnds {
-            point: end.voxel(),
-            origin: spec.snap(&place.apply(&origin)).voxel(),
-            is_flat: rules.flat.contains(placed.object.cloud.labels[i]),
-        },
-    }
-}
-
-/// The part before the entry; none if the origin is inside the box.
-fn world_part(
-    placed: &PlacedObject,
-    i: usize,
-    place: &RigidMap,
-    spec: &GridSpec,
-    rules: &RayRules,
-) -> Option<Ray> {
-    let (point, origin) = (placed.object.cloud.positions[i], placed.object.origin(i));
-    if placed.seen.contains(&origin) {
-        return None;
-    }
-    let entry = placed.seen.entry(&origin, &point);
-    let snapped_origin = spec.snap(&place.apply(&origin));
-    Some(Ray {
-        end: spec.snap(&place.apply(&entry)),
-        origin: snapped_origin,
-        hits: false,
-        ends: RayEnds {
-            point: spec.snap(&place.apply(&point)).voxel(),
-            origin: snapped_origin.voxel(),
-            is_flat: rules.flat.contains(placed.object.cloud.labels[i]),
-        },
-    })
 }
