@@ -208,9 +208,9 @@ impl Ways {
             for lane in 0..LANES {
                 let back = self.back[axis][lane];
                 let at = (self.start[axis][lane] ^ back) - back + (back & (shape[axis] - 1));
-                let way = self.full[axis][lane].max(1) as f32 / LATTICE as f32;
-                enter[lane] = enter[lane].max((-at - 2) as f32 / way);
-                leave[lane] = leave[lane].min((shape[axis] - at + 1) as f32 / way);
+                let per_voxel = LATTICE as f32 / self.full[axis][lane].max(1) as f32;
+                enter[lane] = enter[lane].max((-at - 2) as f32 * per_voxel);
+                leave[lane] = leave[lane].min((shape[axis] - at + 1) as f32 * per_voxel);
             }
         }
         let mut part = [0; LANES];

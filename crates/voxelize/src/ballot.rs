@@ -13,6 +13,9 @@ pub(crate) struct BallotBox {
     counts: Vec<u32>,
     /// Votes of track points once more, with their tracks.
     track_votes: Vec<TrackVote>,
+    /// For each ballot the votes of the track that votes now, and the ballots where it has any.
+    now: Vec<u32>,
+    now_at: Vec<u32>,
 }
 
 /// Votes of one track in one voxel, sorted by voxel, class and track.
@@ -42,6 +45,8 @@ impl BallotBox {
             voxels: Vec::new(),
             counts: Vec::new(),
             track_votes: Vec::new(),
+            now: Vec::new(),
+            now_at: Vec::new(),
         }
     }
 
@@ -56,16 +61,30 @@ impl BallotBox {
         ballot
     }
 
-    /// Counts a point of a track.
-    pub(crate) fn cast_for_track(&mut self, flat: usize, class: ClassId, track: TrackId) {
+    /// Counts a point of the track that votes now.
+    #[inline]
+    pub(crate) fn cast_for_track(&mut self, flat: usize, class: ClassId) {
         let ballot = self.cast(flat, class);
-        self.track_votes.push(TrackVote { ballot, class, track, count: 1 });
+        let votes = &mut self.now[ballot as usize];
+        if *votes == 0 {
+            self.now_at.push(ballot);
+        }
+        *votes += 1;
+    }
+
+    /// Puts down the votes of the track that voted, all of one class.
+    pub(crate) fn close_track(&mut self, class: ClassId, track: TrackId) {
+        for ballot in self.now_at.drain(..) {
+            let count = std::mem::take(&mut self.now[ballot as usize]);
+            self.track_votes.push(TrackVote { ballot, class, track, count });
+        }
     }
 
     fn open(&mut self, flat: usize) -> u32 {
         let ballot = self.voxels.len() as u32;
         self.voxels.push(flat as u32);
         self.counts.resize(self.counts.len() + self.classes, 0);
+        self.now.push(0);
         self.ballot_of[flat] = ballot + 1;
         ballot
     }
@@ -87,6 +106,6 @@ impl BallotBox {
 fn merge_equal(sorted: &[TrackVote]) -> Vec<TrackVote> {
     sorted
         .chunk_by(|a, b| (a.ballot, a.class, a.track) == (b.ballot, b.class, b.track))
-        .map(|same| TrackVote { count: same.len() as u32, ..same[0] })
+        .map(|same| TrackVote { count: same.iter().map(|vote| vote.count).sum(), ..same[0] })
         .collect()
 }

@@ -50,9 +50,7 @@ pub fn voxelize(
 ) -> VoxelGrid<Option<VoxelVote>> {
     let mut ballots = BallotBox::new(spec, rules.rank.len());
     cast_background(instant, spec, &mut ballots);
-    for object in &instant.objects {
-        cast_object(object, spec, &mut ballots);
-    }
+    cast_objects(instant, spec, &mut ballots);
     let mut votes = VoxelGrid::filled(spec, None);
     let values = votes.values_mut();
     ballots.tally(|ballot| values[ballot.flat] = Some(rules.decide(&ballot)));
@@ -60,9 +58,9 @@ pub fn voxelize(
 }
 
 fn cast_background(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
-    let place = RigidMap::from(&instant.grid_from_world);
+    let place = &RigidMap::from(&instant.grid_from_world);
     for sweep in &instant.background {
-        Level::best().run(CastSweep { sweep, place: &place, spec, ballots });
+        Level::best().run(CastSweep { sweep, place, spec, ballots });
     }
 }
 
@@ -79,30 +77,54 @@ impl Kernel for CastSweep<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let cloud = &self.sweep.cloud;
-        let bundles = cloud.positions.chunks(BUNDLE).zip(cloud.labels.chunks(BUNDLE));
+        let Self { sweep, place, spec, ballots } = self;
+        let bundles = sweep.cloud.positions.chunks(BUNDLE).zip(sweep.cloud.labels.chunks(BUNDLE));
         for (number, (positions, labels)) in bundles.enumerate() {
-            let reach = self.sweep.bundles.reach(number * BUNDLE, self.spec, self.place);
-            if !reach.meets(self.spec) {
-                continue;
-            }
-            let flats = self.spec.flats_of(self.place, positions);
-            for (flat, class) in flats.into_iter().zip(labels) {
-                if let Some(flat) = flat {
-                    self.ballots.cast(flat, *class);
-                }
+            if sweep.bundles.reach(number * BUNDLE, spec, place).meets(spec) {
+                let flats = spec.flats_of(place, positions).into_iter().zip(labels);
+                flats.for_each(|(flat, class)| {
+                    flat.map(|flat| ballots.cast(flat, *class));
+                });
             }
         }
     }
 }
 
-fn cast_object(placed: &PlacedObject, spec: &GridSpec, ballots: &mut BallotBox) {
-    let Some(grid_from_box) = &placed.grid_from_box else { return };
-    let grid_from_box = RigidMap::from(grid_from_box);
-    let (track, cloud) = (placed.object.track, &placed.object.cloud);
-    for (position, class) in cloud.positions.iter().zip(&cloud.labels) {
-        if let Some(flat) = spec.flat_of(&grid_from_box.apply(position)) {
-            ballots.cast_for_track(flat, *class, track);
+/// Track by track, and class by class should a track have several.
+fn cast_objects(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
+    let key =
+        |placed: &PlacedObject| (placed.object.track, placed.object.cloud.labels.first().copied());
+    let mut objects: Vec<&PlacedObject> = instant.objects.iter().collect();
+    objects.sort_by_key(|placed| key(placed));
+    for of_track in objects.chunk_by(|a, b| key(a) == key(b)) {
+        let (track, class) = key(of_track[0]);
+        for placed in of_track {
+            Level::best().run(CastObject { placed, spec, ballots });
+        }
+        class.into_iter().for_each(|class| ballots.close_track(class, track));
+    }
+}
+
+/// Casts the votes of a track's points in one sweep, which are of one class.
+struct CastObject<'a> {
+    placed: &'a PlacedObject<'a>,
+    spec: &'a GridSpec,
+    ballots: &'a mut BallotBox,
+}
+
+impl Kernel for CastObject<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { placed, spec, ballots } = self;
+        let Some(grid_from_box) = &placed.grid_from_box else { return };
+        let (place, cloud) = (RigidMap::from(grid_from_box), &placed.object.cloud);
+        for (positions, labels) in cloud.positions.chunks(BUNDLE).zip(cloud.labels.chunks(BUNDLE)) {
+            let flats = spec.flats_of(&place, positions).into_iter().zip(labels);
+            flats.for_each(|(flat, class)| {
+                flat.map(|flat| ballots.cast_for_track(flat, *class));
+            });
         }
     }
 }
