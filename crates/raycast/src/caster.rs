@@ -16,7 +16,7 @@ use occlabel_core::{
 use crate::cells::Cell;
 use crate::near::{NearRules, NearSteps, RayEnds};
 use crate::walkers::{MOST_VOXELS, Walks, walk_lanes};
-use crate::ways::{Batch, LANES, Lane, PARTS, Ways, all, any, fits};
+use crate::ways::{Batch, LANES, Lane, Ways, all, any, fits};
 use crate::{Outside, RaySettings};
 
 /// A ray to cast: walked from `end` towards `origin`.
@@ -105,6 +105,11 @@ impl<'a, C: Cell> Caster<'a, C> {
     /// Whether parts of rays can be cast in batches: no rule speaks of the whole rays' ends.
     pub(crate) fn takes_parts(&self) -> bool {
         self.takes_batches() && !self.near.are_any()
+    }
+
+    /// Whether it matters which rays end on the ground.
+    pub(crate) fn asks_for_ground(&self) -> bool {
+        self.near_steps.is_some()
     }
 
     /// Voxels along each axis.
@@ -210,10 +215,9 @@ impl<'a, C: Cell> Caster<'a, C> {
     #[inline(always)]
     fn cast_inside<const RULED: bool>(&mut self, batch: &Batch, near: Option<NearSteps>) {
         let ways = Ways::new(batch);
-        let total = ways.faces_before(&[PARTS; LANES]);
-        let mut walks = Walks::new(&ways, [[0; LANES]; 3], &total, self.shape);
+        let mut walks = Walks::new(&ways, [[0; LANES]; 3], self.shape);
         if let Some(near) = near {
-            near.apply(&mut walks, &total, &batch.flat);
+            near.apply(&mut walks, &ways.faces, &batch.flat);
         }
         walk_lanes::<C, RULED>(&ways, walks, self.strides, &mut self.cells);
     }
@@ -236,11 +240,10 @@ impl<'a, C: Cell> Caster<'a, C> {
     #[inline(always)]
     fn walk_anywhere(&mut self, batch: &Batch) {
         let ways = Ways::new(batch);
-        let total = ways.faces_before(&[PARTS; LANES]);
         let from = ways.faces_before(&ways.part_before_grid(self.shape));
-        let mut walks = Walks::new(&ways, from, &total, self.shape);
+        let mut walks = Walks::new(&ways, from, self.shape);
         if let Some(near) = self.near_steps {
-            near.apply(&mut walks, &total, &batch.flat);
+            near.apply(&mut walks, &ways.faces, &batch.flat);
         }
         walk_lanes::<C, true>(&ways, walks, self.strides, &mut self.cells);
     }

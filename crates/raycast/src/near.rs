@@ -84,7 +84,7 @@ impl<'a> NearRules<'a> {
 }
 
 impl NearSteps {
-    /// Applies the rules to whole rays, which meet so many faces in all; `flat` tells which end on
+    /// Applies the rules to whole rays, which meet `total` faces; `flat` tells which end on
     /// the ground.
     #[inline(always)]
     pub(crate) fn apply(&self, walks: &mut Walks, total: &[Lane; 3], flat: &Lane) {

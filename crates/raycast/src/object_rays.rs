@@ -42,7 +42,7 @@ impl<'a> ObjectRays<'a> {
     }
 
     /// The whole ray of point `i` from a lidar, grid frame.
-    pub(crate) fn from_lidar(&self, i: usize, lidar: &Point3<f64>) -> Ray {
+    pub(crate) fn whole(&self, i: usize, lidar: &Point3<f64>) -> Ray {
         Ray::whole(self.end(i), self.spec.snap(lidar), self.is_flat(i))
     }
 
@@ -87,6 +87,12 @@ impl<'a> ObjectRays<'a> {
         let ends =
             RayEnds { point: point.voxel(), origin: origin.voxel(), is_flat: self.is_flat(i) };
         Some(Ray { end, origin: start, hits: of_object, ends })
+    }
+
+    /// An origin by its number; none if it is inside the box.
+    fn origin_outside(&self, of: u32) -> Option<LatticePoint> {
+        let origin = &self.placed.object.cloud.origins[of as usize];
+        (!self.placed.seen.contains(origin)).then(|| self.snap(origin))
     }
 
     #[inline(always)]
@@ -151,11 +157,15 @@ impl<C: Cell> CastParts<'_, '_, '_, C> {
     fn lead_to_origins(&self, batch: &mut Batch, points: &Range<usize>) {
         let ObjectRays { placed, .. } = self.rays;
         batch.end = batch.origin;
+        let mut known = None;
         for (lane, i) in points.clone().enumerate() {
-            let origin = placed.object.origin(i);
-            match placed.seen.contains(&origin) {
-                true => batch.remove(lane),
-                false => batch.put_origin(lane, self.rays.snap(&origin)),
+            let of = placed.object.cloud.origin_of[i];
+            if known.is_none_or(|(last, _)| last != of) {
+                known = Some((of, self.rays.origin_outside(of)));
+            }
+            match known.and_then(|(_, origin)| origin) {
+                None => batch.remove(lane),
+                Some(origin) => batch.put_origin(lane, origin),
             }
         }
     }

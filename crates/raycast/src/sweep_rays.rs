@@ -83,10 +83,19 @@ impl<C: Cell> CastBundles<'_, '_, '_, C> {
     #[inline(always)]
     fn cast_bundle(&mut self, bundle: Range<usize>, known: &mut KnownOrigin) {
         let mut batch = self.snap_ends(&bundle);
-        for (lane, i) in bundle.clone().enumerate() {
-            batch.put_origin(lane, self.origin(i, known));
-            let is_flat = self.rays.flat.contains(self.rays.sweep.cloud.labels[i]);
-            batch.flat[lane] = -i32::from(is_flat);
+        let cloud = &self.rays.sweep.cloud;
+        let of = &cloud.origin_of[bundle.clone()];
+        if of.iter().all(|other| *other == of[0]) {
+            batch.share_origin(self.origin(bundle.start, known));
+        } else {
+            bundle.clone().enumerate().for_each(|(lane, i)| {
+                batch.put_origin(lane, self.origin(i, known));
+            });
+        }
+        if self.caster.asks_for_ground() {
+            for (lane, class) in cloud.labels[bundle.clone()].iter().enumerate() {
+                batch.flat[lane] = -i32::from(self.rays.flat.contains(*class));
+            }
         }
         (bundle.len()..LANES).for_each(|lane| batch.remove(lane));
         self.cast_misfits(&mut batch, bundle.start);

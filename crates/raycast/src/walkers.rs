@@ -40,9 +40,9 @@ pub(crate) struct Walks {
 }
 
 impl Walks {
-    /// From where the rays have met `from` faces to where they have met `to`, or leave the grid.
+    /// From where the rays have met `from` faces to their ends, or to where they leave the grid.
     #[inline(always)]
-    pub(crate) fn new(ways: &Ways, from: [Lane; 3], to: &[Lane; 3], shape: [i32; 3]) -> Self {
+    pub(crate) fn new(ways: &Ways, from: [Lane; 3], shape: [i32; 3]) -> Self {
         let (mut left, mut entered, mut gone): (Lane, Lane, Lane) =
             ([0; LANES], [0; LANES], [0; LANES]);
         let guards = [1_i32 << 10, 1 << 10, 1 << 9];
@@ -52,7 +52,8 @@ impl Walks {
                 let back = ways.back[axis][lane];
                 let at = (ways.start[axis][lane] ^ back) - back + (back & (shape[axis] - 1));
                 let at = at + from[axis][lane];
-                let (steps, border) = (to[axis][lane] - from[axis][lane], shape[axis] - 1 - at);
+                let (steps, border) =
+                    (ways.faces[axis][lane] - from[axis][lane], shape[axis] - 1 - at);
                 left[lane] = left[lane].wrapping_add(steps.min(border).wrapping_mul(UNITS[axis]));
                 gone[lane] |= border >> 31;
                 let ahead = guards[axis] - (-at).max(0);

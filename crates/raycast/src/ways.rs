@@ -40,6 +40,8 @@ pub(crate) struct Ways {
     pub(crate) full: [Lane; 3],
     /// From the end to the first face.
     pub(crate) face: [Lane; 3],
+    /// How many faces there are on the way.
+    pub(crate) faces: [Lane; 3],
 }
 
 /// Ends and origins on the lattice.
@@ -127,6 +129,15 @@ impl Batch {
         }
     }
 
+    /// Sets the origin of all rays.
+    #[inline(always)]
+    pub(crate) fn share_origin(&mut self, origin: LatticePoint) {
+        self.put_origin(0, origin);
+        for axis in 0..3 {
+            self.origin[axis] = [self.origin[axis][0]; LANES];
+        }
+    }
+
     /// Which rays are too far or too long for 32 bits: -1, else 0.
     #[inline(always)]
     pub(crate) fn misfits(&self) -> Lane {
@@ -168,14 +179,16 @@ impl Ways {
     #[inline(always)]
     pub(crate) fn new(batch: &Batch) -> Self {
         let zero = [[0; LANES]; 3];
-        let mut ways = Self { start: zero, back: zero, full: zero, face: zero };
+        let mut ways = Self { start: zero, back: zero, full: zero, face: zero, faces: zero };
         for axis in 0..3 {
             for lane in 0..LANES {
                 let end = batch.end[axis][lane];
                 let way = batch.origin[axis][lane] - end;
                 let back = way >> 31;
                 let within = end & (LATTICE as i32 - 1);
+                let voxels = (batch.origin[axis][lane] >> BITS) - (end >> BITS);
                 ways.start[axis][lane] = end >> BITS;
+                ways.faces[axis][lane] = (voxels ^ back) - back;
                 ways.back[axis][lane] = back;
                 ways.full[axis][lane] = (way ^ back) - back;
                 ways.face[axis][lane] = (within & back) | ((LATTICE as i32 - within) & !back);

@@ -86,7 +86,7 @@ impl<'a> Work<'a> {
             Kind::Current(placed, pose) => {
                 let (rays, lidar) =
                     (ObjectRays::new(placed, &pose, spec, rules), &instant.reference_lidar);
-                points.for_each(|i| caster.cast(&rays.from_lidar(i, lidar)));
+                points.for_each(|i| caster.cast(&rays.whole(i, lidar)));
             }
             Kind::Hits(placed, pose) => {
                 let rays = ObjectRays::new(placed, &pose, spec, rules);

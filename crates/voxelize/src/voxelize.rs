@@ -82,9 +82,11 @@ impl Kernel for CastSweep<'_> {
         for (number, (positions, labels)) in bundles.enumerate() {
             if sweep.bundles.reach(number * BUNDLE, spec, place).meets(spec) {
                 let flats = spec.flats_of(place, positions).into_iter().zip(labels);
-                flats.for_each(|(flat, class)| {
-                    flat.map(|flat| ballots.cast(flat, *class));
-                });
+                for (flat, class) in flats {
+                    if let Some(flat) = flat {
+                        ballots.cast(flat, *class);
+                    }
+                }
             }
         }
     }
@@ -122,9 +124,11 @@ impl Kernel for CastObject<'_> {
         let (place, cloud) = (RigidMap::from(grid_from_box), &placed.object.cloud);
         for (positions, labels) in cloud.positions.chunks(BUNDLE).zip(cloud.labels.chunks(BUNDLE)) {
             let flats = spec.flats_of(&place, positions).into_iter().zip(labels);
-            flats.for_each(|(flat, class)| {
-                flat.map(|flat| ballots.cast_for_track(flat, *class));
-            });
+            for (flat, class) in flats {
+                if let Some(flat) = flat {
+                    ballots.cast_for_track(flat, *class);
+                }
+            }
         }
     }
 }
