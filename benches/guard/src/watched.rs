@@ -3,9 +3,9 @@
 use occlabel_aggregate::{SplitSweep, TrackBox, split_sweep};
 use occlabel_annotate::RelabelSettings;
 use occlabel_core::{AggregatedScene, ClassId, Instant, RayCounts, Sweep, VoxelGrid, VoxelVote};
-use occlabel_occlusion::{Eye, Matter};
-use occlabel_pipeline::{LabelledKeyframe, Rules, label_keyframe};
-use occlabel_raycast::count;
+use occlabel_occlusion::{Eye, Lenses, Matter};
+use occlabel_pipeline::{LabelOptions, LabelledKeyframe, Rules, label_keyframe};
+use occlabel_raycast::{Casting, count};
 
 use crate::prepared::Prepared;
 
@@ -29,7 +29,7 @@ pub(crate) fn voxelize(instant: &Instant, rules: &Rules) -> VoxelGrid<Option<Vox
 
 #[inline(never)]
 pub(crate) fn rays(instant: &Instant, rules: &Rules) -> RayCounts {
-    count(instant, &rules.spec, &rules.rays(), 1)
+    count(instant, &rules.spec, &rules.rays(), &Casting::new(rules.states.crossings(), 1))
 }
 
 #[inline(never)]
@@ -43,13 +43,7 @@ pub(crate) fn keyframe(
     aggregated: &AggregatedScene<ClassId>,
 ) -> LabelledKeyframe {
     let Prepared { drive, rules } = prepared;
-    label_keyframe(
-        &drive.scene,
-        aggregated,
-        &Lenses::default(),
-        prepared.keyframe(),
-        rules,
-        &LabelOptions::labels(1),
-        |_| {},
-    )
+    let (lenses, options) = (Lenses::default(), LabelOptions::labels(1));
+    let keyframe = prepared.keyframe();
+    label_keyframe(&drive.scene, aggregated, &lenses, keyframe, rules, &options, |_| {})
 }

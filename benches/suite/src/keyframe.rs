@@ -4,11 +4,12 @@ use nalgebra::Point3;
 use occlabel_aggregate::{Moment, TrackBox, compose};
 use occlabel_annotate::{BoxSource, box_at};
 use occlabel_core::{
-    AggregatedScene, BoxTrack, ClassId, GridSpec, Instant, Keyframe, Scene, VoxelGrid, walk,
+    AggregatedScene, BoxTrack, ClassId, GridSpec, Instant, Keyframe, RayCounts, Scene, VoxelGrid,
+    walk,
 };
 use occlabel_occlusion::{Eye, Matter, matter};
 use occlabel_pipeline::Rules;
-use occlabel_raycast::{classify, count};
+use occlabel_raycast::{Casting, classify, count};
 use occlabel_voxelize::voxelize;
 
 /// The keyframe's instant.
@@ -38,8 +39,18 @@ pub(crate) fn instant<'a>(
 pub(crate) fn matter_at(instant: &Instant, rules: &Rules) -> VoxelGrid<Matter> {
     let ground = &rules.taxonomy.flat;
     let votes = voxelize(instant, &rules.spec, &rules.votes());
-    let counts = count(instant, &rules.spec, &rules.rays(), 1);
+    let counts = cast(instant, rules);
     matter(&classify(&counts, &votes, ground, &rules.states), &votes, ground)
+}
+
+/// Counts the rays on one thread, as far as the labels need it.
+pub(crate) fn cast(instant: &Instant, rules: &Rules) -> RayCounts {
+    cast_into(instant, &rules.spec, rules)
+}
+
+/// The same into another grid than that of the rules.
+pub(crate) fn cast_into(instant: &Instant, spec: &GridSpec, rules: &Rules) -> RayCounts {
+    count(instant, spec, &rules.rays(), &Casting::new(rules.states.crossings(), 1))
 }
 
 /// The keyframe's cameras.

@@ -2,13 +2,12 @@
 
 use occlabel_core::{AggregatedScene, ClassId, Instant, Keyframe, OccupancyLabels, VoxelGrid};
 use occlabel_labels::{evidence_npz, labels_npz};
-use occlabel_occlusion::{CameraRays, Eye, Matter, visible};
-use occlabel_pipeline::{Rules, label_keyframe};
-use occlabel_raycast::count;
+use occlabel_occlusion::{CameraRays, Eye, Lenses, Matter, visible};
+use occlabel_pipeline::{LabelOptions, Rules, label_keyframe};
 use occlabel_voxelize::voxelize;
 
 use crate::clock::cost_of;
-use crate::keyframe::{eyes, instant, matter_at, visits};
+use crate::keyframe::{cast, eyes, instant, matter_at, visits};
 use crate::row::Case;
 use crate::world::OpenLog;
 
@@ -18,6 +17,7 @@ pub(crate) struct KeyframeStages<'a> {
     aggregated: &'a AggregatedScene<ClassId>,
     precise: Rules,
     occ3d: Rules,
+    lenses: Lenses,
     keyframes: Vec<Prepared<'a>>,
 }
 
@@ -36,18 +36,21 @@ impl<'a> KeyframeStages<'a> {
         keyframes: &[&'a Keyframe],
     ) -> Self {
         let (scene, precise) = (&log.scene, log.rules("precise"));
+        let (lenses, options) = (Lenses::default(), LabelOptions::with_evidence(1));
         let prepare = |keyframe: &&'a Keyframe| {
             let instant = instant(scene, aggregated, keyframe, &precise);
+            let whole =
+                label_keyframe(scene, aggregated, &lenses, keyframe, &precise, &options, |_| {});
             Prepared {
                 keyframe,
                 eyes: eyes(scene, keyframe, &instant),
                 matter: matter_at(&instant, &precise),
-                labels: label_keyframe(scene, aggregated, keyframe, &precise, 1, |_| {}).labels,
+                labels: whole.labels,
                 instant,
             }
         };
         let keyframes = keyframes.iter().map(prepare).collect();
-        Self { log, aggregated, occ3d: log.rules("occ3d-nuscenes"), precise, keyframes }
+        Self { log, aggregated, occ3d: log.rules("occ3d-nuscenes"), precise, lenses, keyframes }
     }
 
     /// All stages, and the whole.
@@ -57,15 +60,18 @@ impl<'a> KeyframeStages<'a> {
         let voxels = self.sum(|_| self.precise.spec.len() as u64);
         vec![
             self.case("voxelize", "point", rays, |at| self.votes(at)),
-            self.case("rays, precise", "ray", rays, |at| cast(at, &self.precise)),
-            self.case("rays, precise", "voxel visit", visits, |at| cast(at, &self.precise)),
-            self.case("rays, occ3d-nuscenes", "ray", rays, |at| cast(at, &self.occ3d)),
+            self.case("rays, precise", "ray", rays, |at| drop(cast(&at.instant, &self.precise)))
+                .and("voxel visit", visits),
+            self.case("rays, occ3d-nuscenes", "ray", rays, |at| {
+                drop(cast(&at.instant, &self.occ3d));
+            }),
             self.cameras("cameras, all-centers", "voxel and camera", &self.precise),
             self.cameras("cameras, pixels", "pixel", &self.occ3d),
-            self.case("label_keyframe, precise", "ray", rays, |at| self.label(at)),
+            self.label("label_keyframe, precise", rays, LabelOptions::labels(1)),
+            self.label("label_keyframe, with evidence", rays, LabelOptions::with_evidence(1)),
             self.case("labels.npz", "voxel", voxels, |at| drop(labels_npz(&at.labels))),
             self.case("evidence.npz", "voxel", voxels, |at| {
-                drop(evidence_npz(&at.labels.evidence));
+                drop(evidence_npz(at.labels.evidence()));
             }),
         ]
     }
@@ -88,7 +94,8 @@ impl<'a> KeyframeStages<'a> {
         };
         let count = self.sum(|at| at.eyes.iter().map(targets).sum());
         self.case(name, unit, count, |at| {
-            drop(visible(&at.eyes, &rules.spec, &at.matter, &rules.occlusion));
+            let Prepared { eyes, matter, .. } = at;
+            drop(visible(eyes, &self.lenses, &rules.spec, matter, &rules.occlusion));
         })
     }
 
@@ -100,12 +107,11 @@ impl<'a> KeyframeStages<'a> {
         drop(voxelize(&at.instant, &self.precise.spec, &self.precise.votes()));
     }
 
-    fn label(&self, at: &Prepared) {
-        let scene = &self.log.scene;
-        drop(label_keyframe(scene, self.aggregated, at.keyframe, &self.precise, 1, |_| {}));
+    fn label<'b>(&'b self, name: &str, rays: u64, options: LabelOptions) -> Case<'b> {
+        self.case(name, "ray", rays, move |at| {
+            let Self { log, aggregated, precise, lenses, .. } = self;
+            let scene = &log.scene;
+            drop(label_keyframe(scene, aggregated, lenses, at.keyframe, precise, &options, |_| {}));
+        })
     }
-}
-
-fn cast(at: &Prepared, rules: &Rules) {
-    drop(count(&at.instant, &rules.spec, &rules.rays(), 1));
 }

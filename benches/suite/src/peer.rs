@@ -3,16 +3,16 @@
 use nalgebra::Point3;
 use occlabel_annotate::relabel;
 use occlabel_core::{
-    AggregatedScene, BackgroundSweep, ClassId, DropCounts, Instant, OccupancyLabels, PointCloud,
-    Timestamp, VoxelState,
+    AggregatedScene, BackgroundSweep, ClassId, DropCounts, Instant, PointCloud, Timestamp,
+    VoxelState,
 };
-use occlabel_pipeline::label_keyframe;
-use occlabel_raycast::count;
+use occlabel_pipeline::{LabelOptions, Lenses, label_keyframe};
 
 use crate::args::Args;
 use crate::clock::cost_of;
 use crate::export::{keyframe, neighbours, without_boxes};
 use crate::exported::Exported;
+use crate::keyframe;
 use crate::row::{Case, measure, print, tell};
 use crate::stages::one_thread;
 use crate::world::OpenLog;
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &Args) {
 fn cast_rays(folder: &Exported, log: &OpenLog, rounds: usize) {
     let (rules, scene) = (log.rules("precise"), rays(folder));
     let instant = Instant::still(&scene);
-    let cast = || count(&instant, &rules.spec, &rules.rays(), 1);
+    let cast = || keyframe::cast(&instant, &rules);
     let counts = cast();
     let voxels = || counts.hits.values().iter().zip(counts.crossings.values());
     let free = voxels().filter(|(hits, crossings)| **hits == 0 && **crossings > 0).count();
@@ -66,19 +66,18 @@ fn find_neighbours(folder: &Exported, rounds: usize) {
 fn label(folder: &Exported, log: &OpenLog, rounds: usize) {
     let rules = log.rules_with("precise", &["raycast.outside=drop"]);
     let scene = points(folder);
-    let label = || label_keyframe(&log.scene, &scene, keyframe(log), &rules, 1, |_| {});
+    let (lenses, options) = (Lenses::default(), LabelOptions::labels(1));
+    let keyframe = keyframe(log);
+    let label = || label_keyframe(&log.scene, &scene, &lenses, keyframe, &rules, &options, |_| {});
     let first = label();
     let case = Case::new("keyframe, ours", "ray", first.rays, || cost_of(label));
     print(&measure(BENCH, vec![case], rounds));
     let seen = first.labels.mask_camera.values().iter().filter(|seen| **seen == 1).count();
-    let states = |state| tell_count(&first.labels, |found| found == state as u8);
+    let states = first.labels.states.values();
+    let states = |state| states.iter().filter(|found| **found == state).count() as f64;
     tell(BENCH, "keyframe, ours: free", "voxels", states(VoxelState::Free));
     tell(BENCH, "keyframe, ours: occupied", "voxels", states(VoxelState::Occupied));
     tell(BENCH, "keyframe, ours: seen", "voxels", seen as f64);
-}
-
-fn tell_count(labels: &OccupancyLabels, is_counted: impl Fn(u8) -> bool) -> f64 {
-    labels.evidence.state.values().iter().filter(|state| is_counted(**state)).count() as f64
 }
 
 /// The classes of the exported queries.
@@ -127,7 +126,7 @@ fn sweep<L>(
     labels: Vec<L>,
 ) -> BackgroundSweep<L> {
     let cloud = PointCloud::from_one_origin(origin, positions, labels);
-    BackgroundSweep { time: Timestamp(0), cloud }
+    BackgroundSweep::new(Timestamp(0), cloud)
 }
 
 fn scene<L>(sweeps: impl IntoIterator<Item = BackgroundSweep<L>>) -> AggregatedScene<L> {

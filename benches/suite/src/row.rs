@@ -10,10 +10,8 @@ use crate::clock::Cost;
 pub(crate) struct Case<'a> {
     /// What it is.
     pub(crate) name: String,
-    /// What is counted.
-    pub(crate) unit: &'static str,
-    /// How many of them.
-    pub(crate) count: u64,
+    /// What is counted, and how many of them: a row each.
+    pub(crate) units: Vec<(&'static str, u64)>,
     /// Does it once.
     pub(crate) run: Box<dyn FnMut() -> Cost + 'a>,
 }
@@ -38,19 +36,31 @@ impl<'a> Case<'a> {
         count: u64,
         run: impl FnMut() -> Cost + 'a,
     ) -> Self {
-        Self { name: name.into(), unit, count, run: Box::new(run) }
+        Self { name: name.into(), units: vec![(unit, count)], run: Box::new(run) }
+    }
+
+    /// Told in another unit too.
+    pub(crate) fn and(mut self, unit: &'static str, count: u64) -> Self {
+        self.units.push((unit, count));
+        self
+    }
+
+    fn rows(&self, bench: &'static str) -> Vec<Row> {
+        let row = |&(unit, count)| Row::new(bench, &self.name, unit, count);
+        self.units.iter().map(row).collect()
     }
 }
 
 /// Measures all cases in turns, so that all meet the same moods of the machine.
 pub(crate) fn measure(bench: &'static str, mut cases: Vec<Case>, rounds: usize) -> Vec<Row> {
-    let mut rows: Vec<Row> = cases.iter().map(|case| Row::new(bench, case)).collect();
+    let mut rows: Vec<Vec<Row>> = cases.iter().map(|case| case.rows(bench)).collect();
     for _ in 0..rounds {
-        for (case, row) in cases.iter_mut().zip(&mut rows) {
-            row.add((case.run)());
+        for (case, rows) in cases.iter_mut().zip(&mut rows) {
+            let cost = (case.run)();
+            rows.iter_mut().for_each(|row| row.add(cost));
         }
     }
-    rows
+    rows.concat()
 }
 
 /// Prints rows: a table for people to stderr, JSON lines to stdout.
@@ -69,10 +79,8 @@ pub(crate) fn tell(bench: &str, name: &str, unit: &str, value: f64) {
 }
 
 impl Row {
-    fn new(bench: &'static str, case: &Case) -> Self {
-        let Case { name, unit, count, .. } = case;
-        let (name, count) = (name.clone(), *count);
-        Self { bench, name, unit, count, cpu_ns: vec![], wall_ns: vec![] }
+    fn new(bench: &'static str, name: &str, unit: &'static str, count: u64) -> Self {
+        Self { bench, name: name.into(), unit, count, cpu_ns: vec![], wall_ns: vec![] }
     }
 
     fn add(&mut self, cost: Cost) {

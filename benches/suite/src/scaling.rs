@@ -2,12 +2,11 @@
 
 use occlabel_annotate::relabel;
 use occlabel_core::{AggregatedScene, ClassId, GridSpec, Instant};
-use occlabel_pipeline::{Rules, label_keyframe};
-use occlabel_raycast::count;
+use occlabel_pipeline::{LabelOptions, Lenses, Rules, label_keyframe};
 
 use crate::args::Args;
 use crate::clock::cost_of;
-use crate::keyframe::{instant, visits};
+use crate::keyframe::{cast, cast_into, instant, visits};
 use crate::row::{Case, measure, print};
 use crate::stages::{one_thread, sorted};
 use crate::world::OpenLog;
@@ -76,7 +75,7 @@ impl Ready {
         let case = |stride| {
             let instant = self.middle(stride);
             let rays = instant.ray_count();
-            let cast = move || count(&instant, &self.rules.spec, &self.rules.rays(), 1);
+            let cast = move || cast(&instant, &self.rules);
             Case::new(format!("rays, 1/{stride} of sweeps"), "ray", rays, move || cost_of(&cast))
         };
         STRIDES.map(case).into()
@@ -86,7 +85,7 @@ impl Ready {
         let case = |size_m: f64| {
             let (instant, spec) = (self.middle(1), self.spec(size_m));
             let visits = visits(&instant, &spec);
-            let cast = move || count(&instant, &spec, &self.rules.rays(), 1);
+            let cast = move || cast_into(&instant, &spec, &self.rules);
             Case::new(format!("rays, {size_m} m"), "voxel visit", visits, move || cost_of(&cast))
         };
         VOXEL_SIZES_M.map(case).into()
@@ -115,8 +114,10 @@ impl Ready {
     fn label(&self, keyframes: usize) {
         let Self { log, rules, aggregated } = self;
         let all = &log.scene.keyframes;
+        let (lenses, options) = (Lenses::default(), LabelOptions::labels(1));
         for keyframe in all.iter().step_by(all.len() / keyframes).take(keyframes) {
-            drop(label_keyframe(&log.scene, aggregated, keyframe, rules, 1, |_| {}));
+            let scene = &log.scene;
+            drop(label_keyframe(scene, aggregated, &lenses, keyframe, rules, &options, |_| {}));
         }
     }
 
@@ -126,7 +127,7 @@ impl Ready {
         let cast = move || {
             for keyframe in &log.scene.keyframes {
                 let instant = instant(&log.scene, aggregated, keyframe, rules);
-                drop(count(&instant, &rules.spec, &rules.rays(), 1));
+                drop(cast(&instant, rules));
             }
         };
         let all = move || {
