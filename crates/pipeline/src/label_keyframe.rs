@@ -94,18 +94,20 @@ pub fn label_keyframe(
     enter(Stage::Raycast);
     let counts = count(&instant, spec, &rules.rays(), &options.casting(&rules.states));
     let states = classify(&counts, &votes, ground, &rules.states);
+    let occupied = occupied_votes(votes, &states);
+    // Taken either way: the counts of a fine grid are not held while cameras look.
+    let counts = options.evidence.then(|| saturated(counts));
 
     enter(Stage::Occlusion);
     let eyes = open_eyes(scene, keyframe, &grid_from_world);
-    let matter = matter(&states, &votes, ground);
-    let camera_bits = visible(&eyes, lenses, spec, &matter, &rules.occlusion);
+    let camera_bits =
+        visible(&eyes, lenses, spec, &matter(&states, &occupied, ground), &rules.occlusion);
 
     enter(Stage::Finish);
-    let occupied = occupied_votes(&states, &votes);
     let mut labels = arrays(rules.taxonomy.free, states, &occupied, &camera_bits);
-    labels.evidence = options.evidence.then(|| {
+    labels.evidence = counts.map(|counts| {
         let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
-        evidence(&counts, &labels.states, &occupied, camera_bits, flow)
+        evidence(counts, &labels.states, &occupied, camera_bits, flow)
     });
     LabelledKeyframe { labels, rays: instant.ray_count() }
 }
@@ -121,10 +123,19 @@ fn open_eyes<'a>(scene: &'a Scene, keyframe: &Keyframe, grid_from_world: &Pose) 
 
 /// The votes of occupied voxels alone.
 fn occupied_votes(
+    mut votes: VoxelGrid<Option<VoxelVote>>,
     states: &VoxelGrid<VoxelState>,
-    votes: &VoxelGrid<Option<VoxelVote>>,
 ) -> VoxelGrid<Option<VoxelVote>> {
-    states.zip_map(votes, |state, vote| vote.filter(|_| *state == VoxelState::Occupied))
+    for (vote, state) in votes.values_mut().iter_mut().zip(states.values()) {
+        *vote = vote.filter(|_| *state == VoxelState::Occupied);
+    }
+    votes
+}
+
+/// Hits and crossings, as far as 16 bits go.
+fn saturated(counts: RayCounts) -> [VoxelGrid<u16>; 2] {
+    let saturate = |count: &u32| u16::try_from(*count).unwrap_or(u16::MAX);
+    [counts.hits, counts.crossings].map(|grid| grid.map(saturate))
 }
 
 /// The arrays of labels.md section 11, but for the evidence.
@@ -146,17 +157,16 @@ fn arrays(
 }
 
 fn evidence(
-    counts: &RayCounts,
+    [hits, crossings]: [VoxelGrid<u16>; 2],
     states: &VoxelGrid<VoxelState>,
     occupied: &VoxelGrid<Option<VoxelVote>>,
     camera_bits: VoxelGrid<u16>,
     flow: VoxelGrid<[f32; 3]>,
 ) -> Evidence {
-    let saturate = |count: &u32| u16::try_from(*count).unwrap_or(u16::MAX);
     let instance = |vote: &VoxelVote| vote.instance.map_or(0, |track| track.0);
     Evidence {
-        hits: counts.hits.map(saturate),
-        crossings: counts.crossings.map(saturate),
+        hits,
+        crossings,
         state: states.map(|state| *state as u8),
         instances: occupied.map(|vote| vote.as_ref().map_or(0, instance)),
         flow,
