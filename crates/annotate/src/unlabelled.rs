@@ -120,7 +120,7 @@ mod tests {
             let label = (y % 3 == 0).then_some(ClassId(1));
             cloud.push(Point3::new(x as f64, y as f64, 0.0), label, 0);
         }
-        BackgroundSweep { time: Timestamp(0), cloud }
+        BackgroundSweep::new(Timestamp(0), cloud)
     }
 
     #[test]
