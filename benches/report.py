@@ -37,7 +37,7 @@ def main():
 def tables(run):
     machine = run["machine"]
     head = f"Commit {run['commit']}, {run['date']}, {machine['processor']}, {machine['cores']} cores, {run['compiler']}.\n"
-    parts = [head, stages(run), scaling(run), scenes(run)]
+    parts = [head, stages(run), lidar(run), scaling(run), scenes(run)]
     parts += [peers(run, job, title) for job, title in JOBS if ours(run, job)]
     return "\n".join(parts + [whole_scene(run)])
 
@@ -46,6 +46,17 @@ def stages(run):
     lines = ["| Stages | a unit is a | CPU ns a unit | least to most |", "|---|---|---|---|"]
     for row in of(run, "stages"):
         lines.append(f"| {row['name']} | {row['unit']} | {number(middle(row))} | {spread(row)} |")
+    return "\n".join(lines) + "\n"
+
+
+def lidar(run):
+    """The kernels on each instruction set, beside the walk of one ray after the other."""
+    lines = ["| Lidar pass | CPU ns a ray | CPU ns a voxel visit | least to most | visits: the scalar walk to it |", "|---|---|---|---|---|"]
+    visits = [row for row in of(run, "lidar") if row["unit"] == "voxel visit"]
+    for row in visits:
+        ray = find(run, "lidar", row["name"])
+        times = statistics.median(a / b for a, b in zip(visits[0]["cpu_ns"], row["cpu_ns"]))
+        lines.append(f"| {row['name']} | {number(middle(ray))} | {number(middle(row))} | {spread(row)} | {times:.2f} |")
     return "\n".join(lines) + "\n"
 
 

@@ -1,11 +1,13 @@
 //! A keyframe, stage by stage.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Point3;
 use occlabel_aggregate::{Moment, TrackBox, compose};
 use occlabel_annotate::{BoxSource, box_at};
 use occlabel_core::{
-    AggregatedScene, BoxTrack, ClassId, GridSpec, Instant, Keyframe, RayCounts, Scene, VoxelGrid,
-    walk,
+    AggregatedScene, BoxTrack, ClassId, GridSpec, Instant, Keyframe, RayCounts, RigidMap, Scene,
+    VoxelGrid, walk,
 };
 use occlabel_occlusion::{Eye, Matter, matter};
 use occlabel_pipeline::Rules;
@@ -63,19 +65,28 @@ pub(crate) fn eyes<'a>(scene: &'a Scene, keyframe: &Keyframe, instant: &Instant)
     keyframe.exposures.iter().map(eye).collect()
 }
 
-/// How often rays of the background enter a voxel of the grid, hits included.
-pub(crate) fn visits(instant: &Instant, spec: &GridSpec) -> u64 {
-    let mut visits = 0;
+/// Counts the rays of the background one by one, as a world without near rules has it.
+pub(crate) fn walk_background(instant: &Instant, spec: &GridSpec) -> RayCounts {
+    let place = RigidMap::from(&instant.grid_from_world);
+    let (mut hits, mut crossings) = (VoxelGrid::filled(spec, 0), VoxelGrid::filled(spec, 0));
     for sweep in &instant.background {
         for (i, position) in sweep.cloud.positions.iter().enumerate() {
-            let end = spec.snap(&(instant.grid_from_world * position));
-            let origin = spec.snap(&(instant.grid_from_world * sweep.cloud.origin(i)));
-            visits += u64::from(spec.flat(end.voxel()).is_some());
-            walk(spec, end, origin, |_, _| {
-                visits += 1;
-                std::ops::ControlFlow::Continue(())
+            let end = spec.snap(&place.apply(position));
+            let origin = spec.snap(&place.apply(&sweep.cloud.origin(i)));
+            if let Some(flat) = spec.flat(end.voxel()) {
+                hits.values_mut()[flat] += 1;
+            }
+            walk(spec, end, origin, |flat, _| {
+                crossings.values_mut()[flat] += 1;
+                ControlFlow::Continue(())
             });
         }
     }
-    visits
+    RayCounts { hits, crossings }
+}
+
+/// How often rays entered a voxel of the grid, hits included.
+pub(crate) fn visits(counts: &RayCounts) -> u64 {
+    let all = counts.hits.values().iter().chain(counts.crossings.values());
+    all.map(|&count| u64::from(count)).sum()
 }

@@ -7,7 +7,7 @@ use occlabel_pipeline::{LabelOptions, Rules, label_keyframe};
 use occlabel_voxelize::voxelize;
 
 use crate::clock::cost_of;
-use crate::keyframe::{cast, eyes, instant, matter_at, visits};
+use crate::keyframe::{cast, eyes, instant, matter_at, visits, walk_background};
 use crate::row::Case;
 use crate::world::OpenLog;
 
@@ -56,7 +56,7 @@ impl<'a> KeyframeStages<'a> {
     /// All stages, and the whole.
     pub(crate) fn cases(&self) -> Vec<Case<'_>> {
         let rays = self.sum(|at| at.instant.ray_count());
-        let visits = self.sum(|at| visits(&at.instant, &self.precise.spec));
+        let visits = self.sum(|at| visits(&walk_background(&at.instant, &self.precise.spec)));
         let voxels = self.sum(|_| self.precise.spec.len() as u64);
         vec![
             self.case("voxelize", "point", rays, |at| self.votes(at)),

@@ -6,7 +6,7 @@ use occlabel_pipeline::{LabelOptions, Lenses, Rules, label_keyframe};
 
 use crate::args::Args;
 use crate::clock::cost_of;
-use crate::keyframe::{cast, cast_into, instant, visits};
+use crate::keyframe::{cast, cast_into, instant, visits, walk_background};
 use crate::row::{Case, measure, print};
 use crate::stages::{one_thread, sorted};
 use crate::world::OpenLog;
@@ -84,7 +84,7 @@ impl Ready {
     fn with_voxels(&self) -> Vec<Case<'_>> {
         let case = |size_m: f64| {
             let (instant, spec) = (self.middle(1), self.spec(size_m));
-            let visits = visits(&instant, &spec);
+            let visits = visits(&walk_background(&instant, &spec));
             let cast = move || cast_into(&instant, &spec, &self.rules);
             Case::new(format!("rays, {size_m} m"), "voxel visit", visits, move || cost_of(&cast))
         };

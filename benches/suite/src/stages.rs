@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use occlabel_aggregate::{TrackBox, split_sweep};
 use occlabel_annotate::relabel;
-use occlabel_core::{AggregatedScene, ClassId, Sweep};
+use occlabel_core::{AggregatedScene, ClassId, Keyframe, Scene, Sweep};
 use occlabel_pipeline::{Rules, boxes_at, sort_scene};
 
 use crate::args::Args;
@@ -24,9 +24,13 @@ pub(crate) fn run(args: &Args) {
     let settings = rules.relabel(&log.scene);
     print(&measure("stages", once_a_scene(&log, &rules, &sorted), args.rounds));
     let aggregated = relabel(sorted, &settings);
-    let keyframes = KEYFRAMES_AT.map(|at| &log.scene.keyframes[log.scene.keyframes.len() * at / 8]);
-    let keyframes = KeyframeStages::new(&log, &aggregated, &keyframes);
+    let keyframes = KeyframeStages::new(&log, &aggregated, &some_keyframes(&log.scene));
     print(&measure("stages", keyframes.cases(), args.rounds));
+}
+
+/// The keyframes that are measured.
+pub(crate) fn some_keyframes(scene: &Scene) -> [&Keyframe; 3] {
+    KEYFRAMES_AT.map(|at| &scene.keyframes[scene.keyframes.len() * at / 8])
 }
 
 /// All work on the thread that measures: what is compared is cost, not scheduling.
