@@ -68,8 +68,7 @@ fn bytes_a_voxel(log: &TestLog, flags: &[&str]) -> [f64; 2] {
 #[test]
 fn a_run_takes_no_more_memory_than_it_was_planned_to_take() {
     let log = TestLog::nano();
-    let (labels, evidence) = (["--jobs", "1"], ["--jobs", "1", "--evidence"]);
-    for flags in [&labels[..], &evidence, &["--jobs", "2"], &["--jobs", "2", "--evidence"]] {
+    for flags in [&["--jobs", "1"][..], &["--jobs", "2", "--evidence"]] {
         let [planned, taken] = bytes_a_voxel(&log, flags);
         assert!(
             (0.3 * planned..planned + 2.0).contains(&taken),
