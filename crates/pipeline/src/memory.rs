@@ -6,12 +6,12 @@ use occlabel_core::GridSpec;
 /// the search tree.
 const BYTES_A_POINT: u64 = 30 + 34;
 
-/// Bytes that a voxel takes while rays are counted, besides the shards: vote 6, counts so far 8.
-const BYTES_A_COUNTED_VOXEL: u64 = 14;
+/// Bytes that a voxel takes while rays are counted and judged, besides the shards: vote 6, state 1.
+const BYTES_A_COUNTED_VOXEL: u64 = 7;
 
-/// Bytes that a voxel takes in each shard of the ray counts: hits 4, crossings 4, and 4 while they are
-/// turned into counts.
-const BYTES_A_SHARD_VOXEL: u64 = 12;
+/// Bytes that a voxel takes in each shard of the ray counts: hits 4, crossings 4 and, where only
+/// whether there were any is kept at first, 1.
+const BYTES_A_SHARD_VOXEL: u64 = 9;
 
 /// Bytes that a voxel takes while cameras look, besides bits: vote 6, state 1, matter 1, camera bits 2.
 const BYTES_A_LOOKED_AT_VOXEL: u64 = 10;
@@ -116,6 +116,14 @@ mod tests {
         let model = MemoryModel::new(100_000, &spec, 6, true);
         let most = Some(2 << 30);
         assert_eq!((model.plan(1, most), model.plan(2, most)), (Ok((1, 1)), Ok((1, 2))));
+    }
+
+    #[test]
+    fn centimetres_around_a_robot_fit_into_two_gibibytes_without_evidence() {
+        let spec = GridSpec::new([0.0; 3], [10.0; 3], [0.02; 3]).unwrap();
+        let most = Some(2 << 30);
+        assert_eq!(MemoryModel::new(100_000, &spec, 6, false).plan(2, most), Ok((1, 1)));
+        assert!(MemoryModel::new(100_000, &spec, 6, true).plan(2, most).is_err());
     }
 
     #[test]

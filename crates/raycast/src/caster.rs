@@ -80,8 +80,15 @@ impl<'a, C: Cell> Caster<'a, C> {
     pub(crate) fn into_counts(mut self) -> RayCounts {
         self.cast_waiting();
         self.cells.truncate(self.spec.len());
-        let crossings = self.cells.iter().map(|cell| cell.crossings()).collect();
+        // Of 32 bits each, they become crossings where they stand.
+        let crossings = self.cells.into_iter().map(Cell::crossings).collect();
         RayCounts { hits: self.hits, crossings: VoxelGrid::from_values(self.spec, crossings) }
+    }
+
+    /// Forgets all crossings of a voxel by the rays cast so far.
+    pub(crate) fn forget(&mut self, flats: impl Iterator<Item = usize>) {
+        self.cast_waiting();
+        flats.for_each(|flat| self.cells[flat] = C::default());
     }
 
     /// The instruction set to cast on.

@@ -49,8 +49,10 @@ pub fn classify(
     flat: &ClassSet,
     settings: &StateSettings,
 ) -> VoxelGrid<VoxelState> {
-    let pairs = counts.hits.zip_map(&counts.crossings, |&hits, &crossings| (hits, crossings));
-    pairs.zip_map(votes, |&(hits, crossings), vote| {
+    assert_eq!(counts.hits.shape(), votes.shape(), "grids of one shape");
+    let mut hits = counts.hits.values().iter();
+    counts.crossings.zip_map(votes, |&crossings, vote| {
+        let hits = *hits.next().expect("as many hits as votes");
         judge(hits, crossings, vote.as_ref(), flat, settings)
     })
 }

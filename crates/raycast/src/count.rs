@@ -60,54 +60,60 @@ struct Rays<'a> {
 
 impl Rays<'_> {
     fn count<C: Cell>(&self) -> RayCounts {
-        let settings = self.rules.settings;
         let (other_time, same_time): (Vec<_>, Vec<_>) =
-            Work::of(self.instant, settings.object_rays)
+            Work::of(self.instant, self.rules.settings.object_rays)
                 .into_iter()
-                .partition(|work| work.is_of_another_time(self.instant, settings.same_time_s));
-        let mut counts = self.cast_all::<C>(&other_time);
-        if settings.object_rays == ObjectRays::Own {
-            forget_air_in_boxes(&mut counts, self.instant, self.spec);
-        }
-        add(&mut counts, &self.cast_all::<C>(&same_time));
-        counts
-    }
-
-    fn cast_all<C: Cell>(&self, work: &[Work]) -> RayCounts {
-        work.par_chunks(work.len().div_ceil(self.casting.shards).max(1))
-            .map(|share| {
-                let mut caster = self.caster::<C>();
-                let cast = |work: &Work| {
-                    work.cast(self.instant, self.spec, self.rules, &mut caster);
-                };
-                share.iter().for_each(cast);
-                caster.into_counts()
+                .partition(|work| self.is_of_another_time(work));
+        (0..self.casting.shards)
+            .into_par_iter()
+            .map(|shard| {
+                self.cast::<C>(self.share(&other_time, shard), self.share(&same_time, shard))
             })
             .reduce_with(|mut sum, counts| {
                 add(&mut sum, &counts);
                 sum
             })
-            .unwrap_or_else(|| self.caster::<C>().into_counts())
+            .expect("at least one shard")
     }
 
-    fn caster<C: Cell>(&self) -> Caster<'_, C> {
-        Caster::new(self.spec, self.rules.settings, self.casting.level)
+    fn is_of_another_time(&self, work: &Work) -> bool {
+        work.is_of_another_time(self.instant, self.rules.settings.same_time_s)
+    }
+
+    fn share<'w>(&self, work: &'w [Work<'w>], shard: usize) -> &'w [Work<'w>] {
+        let size = work.len().div_ceil(self.casting.shards).max(1);
+        work.chunks(size).nth(shard).unwrap_or(&[])
+    }
+
+    /// Casts one after the other into the same grids.
+    fn cast<C: Cell>(&self, other_time: &[Work], same_time: &[Work]) -> RayCounts {
+        let mut caster = Caster::<C>::new(self.spec, self.rules.settings, self.casting.level);
+        self.cast_all(other_time, &mut caster);
+        // Air seen at another time says nothing about where a track stands now.
+        if self.rules.settings.object_rays == ObjectRays::Own {
+            caster.forget(voxels_in_boxes(self.instant, self.spec));
+        }
+        self.cast_all(same_time, &mut caster);
+        caster.into_counts()
+    }
+
+    fn cast_all<C: Cell>(&self, work: &[Work], caster: &mut Caster<C>) {
+        work.iter().for_each(|work| work.cast(self.instant, self.spec, self.rules, caster));
     }
 }
 
-/// Air seen at another time says nothing about where a track stands now.
-fn forget_air_in_boxes(counts: &mut RayCounts, instant: &Instant, spec: &GridSpec) {
-    let crossings = counts.crossings.values_mut();
-    for standing in &instant.standing {
+/// The places of the voxels whose centres are inside a box that stands now.
+fn voxels_in_boxes<'a>(
+    instant: &'a Instant,
+    spec: &'a GridSpec,
+) -> impl Iterator<Item = usize> + 'a {
+    instant.standing.iter().flat_map(move |standing| {
         let box_from_grid = standing.grid_from_box.inverse();
         let centre = standing.grid_from_box.translation.vector.into();
-        for voxel in spec.voxels_near(&centre, standing.grown.radius()) {
-            let is_inside = standing.grown.contains(&(box_from_grid * spec.centre(voxel)));
-            if let (true, Some(flat)) = (is_inside, spec.flat(voxel)) {
-                crossings[flat] = 0;
-            }
-        }
-    }
+        spec.voxels_near(&centre, standing.grown.radius())
+            .filter(move |voxel| standing.grown.contains(&(box_from_grid * spec.centre(*voxel))))
+            .filter_map(|voxel| spec.flat(voxel))
+    })
 }
 
 fn add(sum: &mut RayCounts, counts: &RayCounts) {
