@@ -32,7 +32,7 @@ impl<L> BackgroundSweep<L> {
     /// A sweep of points in world coordinates. The more neighbours stand beside each other, the
     /// faster they are worked on.
     pub fn new(time: Timestamp, cloud: PointCloud<L>) -> Self {
-        let bundles = Bundles::of(&cloud.positions);
+        let bundles = Bundles::of(&cloud);
         Self { time, cloud, bundles }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::{GridSpec, RigidMap};
+use crate::{GridSpec, PointCloud, RigidMap};
 
 /// How many points are taken together.
 pub const BUNDLE: usize = 16;
@@ -10,9 +10,13 @@ pub const BUNDLE: usize = 16;
 /// By how much boxes are taken too large, against rounding, voxels.
 const SPARE_VOXELS: f64 = 1e-3;
 
-/// Boxes around each [`BUNDLE`] points of a cloud, in their order. The last may hold fewer.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Bundles(Vec<Bounds>);
+/// Boxes around each [`BUNDLE`] points of a cloud, in their order, and around all of it. The last
+/// may hold fewer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bundles {
+    each: Vec<Bounds>,
+    all: Bounds,
+}
 
 /// A box around points, rounded outwards to `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,22 +33,44 @@ pub struct Reach {
 }
 
 impl Bundles {
-    /// Of points; those without finite coordinates are in no box.
-    pub fn of(positions: &[Point3<f64>]) -> Self {
-        Self(positions.chunks(BUNDLE).map(Bounds::of).collect())
+    /// Of a cloud's points; those without finite coordinates are in no box.
+    pub fn of<L>(cloud: &PointCloud<L>) -> Self {
+        let each: Vec<Bounds> = cloud.positions.chunks(BUNDLE).map(Bounds::of).collect();
+        let all = each.iter().fold(Bounds::of(&cloud.origins), Bounds::and);
+        Self { each, all }
+    }
+
+    /// The box around all points and origins, where `place` brings it.
+    pub fn whole_reach(&self, spec: &GridSpec, place: &RigidMap) -> Reach {
+        self.all.reach(spec, place)
     }
 
     /// The box around the bundle that begins at point `start`, where `place` brings it.
     #[inline]
     pub fn reach(&self, start: usize, spec: &GridSpec, place: &RigidMap) -> Reach {
-        let Bounds { low, high } = self.0[start / BUNDLE];
-        Reach::of_box(&low.map(f64::from).into(), &high.map(f64::from).into(), spec, place)
+        self.each[start / BUNDLE].reach(spec, place)
     }
 }
 
 impl Bounds {
+    const NONE: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+
+    #[inline]
+    fn reach(&self, spec: &GridSpec, place: &RigidMap) -> Reach {
+        let (low, high) = (self.low.map(f64::from), self.high.map(f64::from));
+        Reach::of_box(&low.into(), &high.into(), spec, place)
+    }
+
+    fn and(mut self, other: &Self) -> Self {
+        for axis in 0..3 {
+            self.low[axis] = self.low[axis].min(other.low[axis]);
+            self.high[axis] = self.high[axis].max(other.high[axis]);
+        }
+        self
+    }
+
     fn of(points: &[Point3<f64>]) -> Self {
-        let mut bounds = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+        let mut bounds = Self::NONE;
         for point in points {
             for axis in 0..3 {
                 bounds.low[axis] = bounds.low[axis].min((point[axis] as f32).next_down());
@@ -102,7 +128,8 @@ mod tests {
             let place = RigidMap::from(&Pose::from_parts(offset.into(), turned));
             let at = |i: i32| Point3::new(f64::from(i * 7 % 13), f64::from(i * 5 % 9), 0.1) * 0.4;
             let points: Vec<_> = (0..40).map(|i| at(i + turn)).collect();
-            let bundles = Bundles::of(&points);
+            let cloud = PointCloud::from_one_origin(Point3::origin(), points.clone(), vec![(); 40]);
+            let bundles = Bundles::of(&cloud);
             for (start, bundle) in (0..40).step_by(BUNDLE).zip(points.chunks(BUNDLE)) {
                 let meets = bundles.reach(start, &spec, &place).meets(&spec);
                 let is_in = |p: &Point3<f64>| spec.flat_of(&place.apply(p)).is_some();

@@ -24,6 +24,9 @@ pub(crate) struct SweepRays<'a> {
 impl SweepRays<'_> {
     /// Casts the rays of some points; the first of them begins a bundle.
     pub(crate) fn cast<C: Cell>(&self, points: Range<usize>, caster: &mut Caster<C>) {
+        if !self.sweep.bundles.whole_reach(self.spec, &self.place).meets(self.spec) {
+            return;
+        }
         if caster.takes_batches() {
             caster.level().run(CastBundles { rays: *self, points, caster });
         } else {

@@ -59,7 +59,9 @@ pub fn voxelize(
 
 fn cast_background(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
     let place = &RigidMap::from(&instant.grid_from_world);
-    for sweep in &instant.background {
+    let reaches =
+        |sweep: &&&BackgroundSweep<ClassId>| sweep.bundles.whole_reach(spec, place).meets(spec);
+    for sweep in instant.background.iter().filter(reaches) {
         Level::best().run(CastSweep { sweep, place, spec, ballots });
     }
 }
