@@ -24,6 +24,7 @@ impl Args {
             match word.as_str() {
                 "--world" => args.world = words.next()?,
                 "--rounds" => args.rounds = words.next()?.parse().ok().filter(|n| *n > 0)?,
+                word if word.starts_with("--") => return None,
                 _ => args.rest.push(word),
             }
         }

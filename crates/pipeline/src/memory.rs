@@ -2,6 +2,9 @@
 
 use occlabel_core::GridSpec;
 
+/// Bytes that the program takes whatever it labels: itself, its threads, tables of a small log.
+const BYTES_FOR_ALL: u64 = 16 << 20;
+
 /// Bytes that a point takes while its scene is in memory: position, label, origin, and its place in
 /// the search tree.
 const BYTES_A_POINT: u64 = 30 + 34;
@@ -53,7 +56,9 @@ impl MemoryModel {
 
     /// Bytes with `keyframes` labelled at once, the rays of each in `shards`.
     pub fn bytes(&self, keyframes: usize, shards: usize) -> u64 {
-        self.points * BYTES_A_POINT + keyframes as u64 * self.keyframe_bytes(shards as u64)
+        BYTES_FOR_ALL
+            + self.points * BYTES_A_POINT
+            + keyframes as u64 * self.keyframe_bytes(shards as u64)
     }
 
     fn keyframe_bytes(&self, shards: u64) -> u64 {
