@@ -39,7 +39,7 @@ fn scene(points: &[Point], a_sweep: usize) -> AggregatedScene<Option<ClassId>> {
     let sweep = |part: &[Point]| {
         let mut cloud = PointCloud::with_origins(vec![Point3::origin()]);
         part.iter().for_each(|(p, label)| cloud.push(*p, *label, 0));
-        BackgroundSweep { time: Timestamp(0), cloud }
+        BackgroundSweep::new(Timestamp(0), cloud)
     };
     let background = points.chunks(a_sweep).map(sweep).collect();
     AggregatedScene { background, objects: Vec::new(), dropped: DropCounts::default() }
