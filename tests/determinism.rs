@@ -18,7 +18,7 @@ const GRID: [&str; 6] = [
 ];
 
 /// Enough for one keyframe at a time, not for many.
-const LITTLE_MEMORY: [&str; 2] = ["--memory", "16MB"];
+const LITTLE_MEMORY: [&str; 2] = ["--memory", "26MB"];
 
 /// The tree's hash for each number of threads, with and without a bound on memory.
 fn hashes(log: &TestLog, preset: &str) -> Vec<String> {
