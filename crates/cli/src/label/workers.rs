@@ -130,7 +130,7 @@ mod tests {
             }
         };
         let write = |item: &usize, ()| -> Result<(), ()> {
-            if *item % 2 == 0 {
+            if item.is_multiple_of(2) {
                 meeting.wait();
             }
             Ok(())
