@@ -1,0 +1,24 @@
+//! The labels of one keyframe, the same whatever dialect they were read from.
+
+use occlabel_core::{GridSpec, VoxelGrid};
+
+/// In `semantics`: the file has no label there, and scores leave it out.
+pub const IGNORED: u8 = 255;
+
+/// The labels of one keyframe: `[x][y][z]`, index 0 at the grid's lower corner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyframeLabels {
+    /// The grid of every array.
+    pub spec: GridSpec,
+    /// The index of the class in the [`ClassTable`](crate::ClassTable) where occupied, the number of
+    /// classes where free, or [`IGNORED`].
+    pub semantics: VoxelGrid<u8>,
+    /// 1 where the lidars observed; `None` if the dialect does not say.
+    pub mask_lidar: Option<VoxelGrid<u8>>,
+    /// 1 where some camera sees it; `None` if the dialect does not say.
+    pub mask_camera: Option<VoxelGrid<u8>>,
+    /// The number of the object, 0 where there is none.
+    pub instances: Option<VoxelGrid<u16>>,
+    /// Velocity in the grid frame, metres per second.
+    pub flow: Option<VoxelGrid<[f32; 3]>>,
+}
