@@ -96,7 +96,7 @@ impl NumberArray {
     /// If there is not one number for each place of the shape.
     pub fn new<T: Number>(shape: &[usize], values: &[T]) -> Self {
         assert_eq!(values.len(), shape.iter().product::<usize>(), "a number for each place");
-        let mut bytes = Vec::with_capacity(values.len() * size_of::<T>());
+        let mut bytes = Vec::with_capacity(size_of_val(values));
         values.iter().for_each(|value| value.put(&mut bytes));
         Self { number: T::TYPE, shape: shape.to_vec(), bytes }
     }
