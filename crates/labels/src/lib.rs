@@ -42,6 +42,7 @@ mod json;
 mod lock;
 mod manifest;
 mod npz;
+mod pose_record;
 mod read;
 mod run;
 mod run_files;
@@ -57,6 +58,7 @@ pub use manifest::{
     ClassRecord, GridRecord, Manifest, Program, SceneRecord, TaxonomyRecord, TrackRecord,
 };
 pub use npz::{evidence_npz, labels_npz};
+pub use pose_record::{PoseRecord, RigidRecord};
 pub use read::{LabelArrays, read_evidence, read_labels};
 pub use run::{Begun, RESUME_DIFFERS, Resume, RunRecord, begin};
 pub use run_files::RunFiles;

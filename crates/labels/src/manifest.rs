@@ -10,7 +10,7 @@ use occlabel_core::{Fault, GridSpec};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{FileRecord, json};
+use crate::{FileRecord, PoseRecord, json};
 
 /// `manifest.json`: the arrays' grid, classes and tracks, and every file with its hash.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,7 +84,7 @@ pub struct ClassRecord {
 }
 
 /// What the arrays of a scene refer to.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneRecord {
     /// Channel names: bit i of `camera_bits` is the i-th.
     pub cameras: Vec<String>,
@@ -92,6 +92,10 @@ pub struct SceneRecord {
     pub tracks: Vec<TrackRecord>,
     /// Tokens of the labelled keyframes, in order of time.
     pub keyframes: Vec<String>,
+    /// Where the ego and the reference lidar stood at each keyframe of the scene, in order of time,
+    /// labelled or not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub poses: Vec<PoseRecord>,
     /// Of a simulated log: the hash of the world that the scene was driven in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<String>,
@@ -251,7 +255,7 @@ pub(crate) mod tests {
                    tracks in prop::collection::vec(track(), 0..4),
                    keyframes in prop::collection::vec("[a-f0-9]{4}", 0..4),
                    world in proptest::option::of("[a-f0-9]{4}")) -> SceneRecord {
-            SceneRecord { cameras, tracks, keyframes, world }
+            SceneRecord { cameras, tracks, keyframes, poses: Vec::new(), world }
         }
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
-use occlabel_labels::{SceneRecord, TrackRecord};
+use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::MemoryModel;
 use occlabel_simulate::World;
@@ -200,8 +200,13 @@ fn scene_record(job: &Job, scene: &Scene) -> SceneRecord {
         cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
         tracks: scene.tracks.iter().map(track).collect(),
         keyframes: scene.keyframes.iter().map(|keyframe| keyframe.token.clone()).collect(),
+        poses: scene.keyframes.iter().map(|keyframe| pose_record(scene, keyframe)).collect(),
         world: world_hash(&job.args.log.input, &scene.name),
     }
+}
+
+fn pose_record(scene: &Scene, keyframe: &Keyframe) -> PoseRecord {
+    PoseRecord::new(&keyframe.token, scene.reference_sweep(keyframe))
 }
 
 /// The hash of the world that lies beside a simulated log; none beside a real one.
