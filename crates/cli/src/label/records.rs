@@ -62,6 +62,8 @@ pub(crate) fn manifest(
             name: job.opened.config.taxonomy.file.clone(),
             hash: job.opened.taxonomy_hash.clone(),
         },
+        dialect: None,
+        notes: Vec::new(),
         grid: GridRecord::new(frame, &rules.spec),
         classes: class_records(&rules.taxonomy.names),
         free: rules.taxonomy.free,
