@@ -1,5 +1,6 @@
 //! The command line as the contract has it: what goes in, what comes out, and how it ends.
 
+mod also;
 mod arrays;
 mod configuration;
 #[cfg(unix)]

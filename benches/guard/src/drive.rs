@@ -100,7 +100,7 @@ fn keyframe(sweep: &SweepHeader, at: usize) -> Keyframe {
     let turn = Rotation3::from_basis_unchecked(&axes);
     let ego_from_camera = Pose::from_parts(Vector3::new(1.7, 0.02, 1.5).into(), turn.into());
     let world_from_camera = sweep.world_from_ego * ego_from_camera;
-    let exposure = Exposure { camera: 0, time: sweep.time, world_from_camera };
+    let exposure = Exposure { camera: 0, time: sweep.time, world_from_camera, image: None };
     Keyframe { token: at.to_string(), time: sweep.time, sweep: at, exposures: vec![exposure] }
 }
 

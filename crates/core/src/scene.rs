@@ -48,6 +48,8 @@ pub struct Exposure {
     pub time: Timestamp,
     /// Where the camera stood then.
     pub world_from_camera: Pose,
+    /// The image's file, relative to the log's root, where the log has it as a file of its own.
+    pub image: Option<String>,
 }
 
 /// A moment that gets a grid of labels.

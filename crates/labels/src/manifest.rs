@@ -10,7 +10,7 @@ use occlabel_core::{Fault, GridSpec};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{FileRecord, json};
+use crate::{FileRecord, PoseRecord, json};
 
 /// `manifest.json`: the arrays' grid, classes and tracks, and every file with its hash.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,11 +25,14 @@ pub struct Manifest {
     pub config_hash: String,
     /// [`inputs_hash`](crate::inputs_hash) of what was read.
     pub inputs_hash: String,
-    /// The dialect of the files; none where they are Occ3D's, with classes of our own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dialect: Option<String>,
     /// Which raw name means which class.
     pub taxonomy: TaxonomyRecord,
+    /// The dialect of the files; none of our own layout, which is that of Occ3D-nuScenes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dialect: Option<String>,
+    /// What the arrays cannot say, and what was lost on the way to them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// The grid of every array.
     pub grid: GridRecord,
     /// The classes in order of their ids.
@@ -87,7 +90,7 @@ pub struct ClassRecord {
 }
 
 /// What the arrays of a scene refer to.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneRecord {
     /// Channel names: bit i of `camera_bits` is the i-th.
     pub cameras: Vec<String>,
@@ -95,6 +98,10 @@ pub struct SceneRecord {
     pub tracks: Vec<TrackRecord>,
     /// Tokens of the labelled keyframes, in order of time.
     pub keyframes: Vec<String>,
+    /// Where the ego and the reference lidar stood at each keyframe of the scene, in order of time,
+    /// labelled or not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub poses: Vec<PoseRecord>,
     /// Of a simulated log: the hash of the world that the scene was driven in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<String>,
@@ -179,8 +186,9 @@ pub(crate) mod tests {
             config_hash: json_hash(&config),
             config,
             inputs_hash: "00".to_owned(),
-            dialect: None,
             taxonomy: TaxonomyRecord { name: "occ3d-nuscenes".to_owned(), hash: "11".to_owned() },
+            dialect: None,
+            notes: Vec::new(),
             grid: GridRecord::new("ego", &spec()),
             classes: vec![ClassRecord { id: 0, name: "others".to_owned() }],
             free: 17,
@@ -255,14 +263,14 @@ pub(crate) mod tests {
                    tracks in prop::collection::vec(track(), 0..4),
                    keyframes in prop::collection::vec("[a-f0-9]{4}", 0..4),
                    world in proptest::option::of("[a-f0-9]{4}")) -> SceneRecord {
-            SceneRecord { cameras, tracks, keyframes, world }
+            SceneRecord { cameras, tracks, keyframes, poses: Vec::new(), world }
         }
     }
 
     prop_compose! {
         fn file()(path in "[a-z]{1,3}(/[a-z0-9][a-z0-9._-]{0,4}){0,3}", bytes in any::<u64>(),
                   blake3 in "[0-9a-f]{8}") -> FileRecord {
-            FileRecord { path: TreePath::new(path).unwrap(), bytes, blake3 }
+            FileRecord { path: TreePath::new(path).unwrap(), bytes, blake3, keyframe: None }
         }
     }
 

@@ -67,7 +67,7 @@ pub(crate) fn exposure(
     time: Timestamp,
 ) -> Exposure {
     let world_from_camera = poses.world_from_ego(world, time) * poses.ego_from_camera[camera];
-    Exposure { camera, time, world_from_camera }
+    Exposure { camera, time, world_from_camera, image: None }
 }
 
 /// Of each camera the time nearest to another, the earlier on ties, if it is near enough.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
-use occlabel_labels::{SceneRecord, TrackRecord};
+use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::MemoryModel;
 use occlabel_simulate::World;
@@ -68,7 +68,7 @@ impl PlannedScene {
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
         let points = job.opened.source.scene_points(&scene);
-        let (spec, evidence) = (&job.opened.rules.spec, job.args.evidence);
+        let (spec, evidence) = (job.targets.largest(), job.args.evidence);
         let model = MemoryModel::new(points, spec, scene.cameras.len(), evidence);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
@@ -200,8 +200,13 @@ fn scene_record(job: &Job, scene: &Scene) -> SceneRecord {
         cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
         tracks: scene.tracks.iter().map(track).collect(),
         keyframes: scene.keyframes.iter().map(|keyframe| keyframe.token.clone()).collect(),
+        poses: scene.keyframes.iter().map(|keyframe| pose_record(scene, keyframe)).collect(),
         world: world_hash(&job.args.log.input, &scene.name),
     }
+}
+
+fn pose_record(scene: &Scene, keyframe: &Keyframe) -> PoseRecord {
+    PoseRecord::new(&keyframe.token, scene.reference_sweep(keyframe))
 }
 
 /// The hash of the world that lies beside a simulated log; none beside a real one.

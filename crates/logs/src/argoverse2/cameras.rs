@@ -45,6 +45,7 @@ pub(super) fn read_cameras(
             camera: cameras.len(),
             time: Timestamp(time_ns),
             world_from_camera: pose * ego_from_camera,
+            image: None,
         };
         let posed = posed(times, &place, ego_poses, notes);
         exposures.push(posed.into_iter().map(expose).collect());

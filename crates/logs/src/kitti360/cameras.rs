@@ -59,7 +59,7 @@ fn expose(
     let expose = |frame| {
         let At::Known(world_from_ego) = poses.at(frame, stamps) else { return None };
         let world_from_camera = world_from_ego * ego_from_camera;
-        Some(Exposure { camera, time: stamps.time(frame).ok()?, world_from_camera })
+        Some(Exposure { camera, time: stamps.time(frame).ok()?, world_from_camera, image: None })
     };
     let mut exposures: Vec<_> = poses.frames().filter_map(expose).collect();
     exposures.sort_by_key(|exposure| exposure.time);

@@ -128,7 +128,7 @@ fn expose(
     times.sort_unstable();
     times.dedup();
     let expose = |time| match recording.frames.pose(&roles.world, frame, time) {
-        Ok(world_from_camera) => Some(Exposure { camera, time, world_from_camera }),
+        Ok(world_from_camera) => Some(Exposure { camera, time, world_from_camera, image: None }),
         Err(found) => {
             let expected = format!("a pose of frame `{frame}` in `{}`", roles.world);
             let fault = Fault::new("transform", &recording.file, expected, found);

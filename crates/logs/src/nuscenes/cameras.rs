@@ -74,7 +74,13 @@ pub(super) fn exposures(
         };
         let pose = world_from_camera(log, camera, image, notes)?;
         if let Some(world_from_camera) = notes.accept(Loss::Camera, pose) {
-            exposures.push(Exposure { camera: index, time: image.time, world_from_camera });
+            let file = Some(image.row.filename.clone());
+            exposures.push(Exposure {
+                camera: index,
+                time: image.time,
+                world_from_camera,
+                image: file,
+            });
         }
     }
     Ok(exposures)

@@ -76,7 +76,8 @@ fn exposure(
     });
     let world_from_ego = notes.accept(Loss::Camera, pose)?;
     let world_from_camera = world_from_ego * camera.ego_from_camera;
-    Some(Exposure { camera: index, time: exposure_time(image, frame), world_from_camera })
+    let time = exposure_time(image, frame);
+    Some(Exposure { camera: index, time, world_from_camera, image: None })
 }
 
 /// When the vehicle stood where the image says; the frame's time, if the image does not say when.

@@ -28,8 +28,12 @@ impl Drive {
     /// A keyframe at a sweep, with the exposures of cameras by their poses.
     pub(crate) fn add_keyframe(&mut self, sweep: usize, world_from_cameras: &[Pose]) {
         let time = self.scene.sweeps[sweep].time;
-        let exposure =
-            |(camera, pose): (usize, &Pose)| Exposure { camera, time, world_from_camera: *pose };
+        let exposure = |(camera, pose): (usize, &Pose)| Exposure {
+            camera,
+            time,
+            world_from_camera: *pose,
+            image: None,
+        };
         let exposures = world_from_cameras.iter().enumerate().map(exposure).collect();
         let token = format!("at-{}", time.0);
         self.scene.keyframes.push(Keyframe { token, time, sweep, exposures });
