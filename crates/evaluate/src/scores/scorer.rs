@@ -1,6 +1,6 @@
 //! One keyframe's prediction against its truth.
 
-use occlabel_core::{Fault, GridSpec, VoxelGrid};
+use occlabel_core::{Fault, VoxelGrid};
 
 use super::confusion::Confusion;
 use super::door::{check_pair, check_rules};
@@ -123,6 +123,7 @@ impl ScoredPair<'_> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use occlabel_core::GridSpec;
 
     /// A row of voxels along x, with one class (0) and free (1).
     pub(crate) fn row(voxels: usize, size_m: f64) -> ScoringRules {
