@@ -53,6 +53,7 @@
 //! ```
 
 pub mod held_out;
+pub mod rays;
 mod world_truth;
 
 pub use world_truth::{
