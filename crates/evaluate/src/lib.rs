@@ -54,6 +54,7 @@
 //! ```
 
 pub mod held_out;
+pub mod rays;
 pub mod scores;
 mod world_truth;
 
