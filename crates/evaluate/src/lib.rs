@@ -53,6 +53,7 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+pub mod compare;
 pub mod held_out;
 pub mod rays;
 pub mod scores;
