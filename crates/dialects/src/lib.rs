@@ -10,8 +10,10 @@ mod class_table;
 mod dialect;
 mod keyframe_labels;
 mod label_set;
+mod poses;
 
 pub use class_table::{Class, ClassTable};
 pub use dialect::{Dialect, DialectGrid};
 pub use keyframe_labels::{IGNORED, KeyframeLabels};
 pub use label_set::{KeyframeKey, LabelSet};
+pub use poses::ScenePoses;
