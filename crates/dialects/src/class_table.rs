@@ -23,6 +23,10 @@ pub struct Class {
     /// Whether scores leave it out, as noise.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_ignored: bool,
+    /// What it means, where that is not what its name says: a concept of
+    /// `configs/dialects/concepts.toml`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub concept: Option<String>,
 }
 
 impl ClassTable {

@@ -101,6 +101,7 @@ fn classes_of(manifest: &Manifest) -> ClassTable {
         id: u16::from(record.id),
         name: record.name.clone(),
         is_ignored: false,
+        concept: None,
     };
     ClassTable {
         free: u16::from(manifest.free),
