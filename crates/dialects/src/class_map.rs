@@ -9,9 +9,8 @@ use crate::{Class, ClassTable, Concepts, IGNORED, Remark};
 /// What each class of a label set becomes in another.
 ///
 /// A class becomes the other set's class of the same concept (of several, the one of the same name);
-/// else the one of the nearest
-/// wider concept; else what usually stands for it; else the other set's class for the rest; else it
-/// is no label. Free stays free, and no label no label.
+/// else the one of the nearest wider concept; else what usually stands for it; else the other set's
+/// class for the rest; else it is no label. Free stays free, and no label no label.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClassMap {
     /// The index of the other set for each index of this one.
@@ -55,21 +54,20 @@ impl ClassMap {
         for (class, becomes) in told {
             pairs[index_of(from, class)?] = (target(to, becomes)?, Reason::Told);
         }
-        let back: Vec<u8> = to.list.iter().map(|class| like(class, from).0).collect();
-        let survives = |(class, pair): (usize, &(u8, Reason))| {
-            back.get(usize::from(pair.0)) == Some(&(class as u8))
-        };
+        let back = table(to.list.iter().map(|class| like(class, from).0), from);
+        let survives =
+            |(class, pair): (usize, &(u8, Reason))| usize::from(back[usize::from(pair.0)]) == class;
         let survive: Vec<bool> = pairs.iter().enumerate().map(survives).collect();
-        let (table, reasons): (Vec<u8>, Vec<Reason>) = pairs.iter().copied().unzip();
         Ok(Self {
             remarks: remarks(from, to, &pairs, &survive),
-            table: padded(table, to.free_index()),
-            reasons,
+            table: table(pairs.iter().map(|pair| pair.0), to),
+            reasons: pairs.iter().map(|pair| pair.1).collect(),
             is_lossless: !survive.contains(&false),
         })
     }
 
-    /// The index in the other set for each index of this one: free to free, [`IGNORED`] to itself.
+    /// The index in the other set for each index of this one: free to free,
+    /// [`IGNORED`] to itself, or to noise where files have no id for it.
     pub fn table(&self) -> &[u8; 256] {
         self.table.first_chunk().expect("a table of all bytes")
     }
@@ -99,42 +97,45 @@ impl ClassMap {
 /// What a class becomes, and why.
 fn like(class: &Class, to: &ClassTable) -> (u8, Reason) {
     let is_same = |other: &Class| {
-        plain(&other.name) == plain(&class.name) && concept_of(other) == concept_of(class)
+        plain(&other.name) == plain(&class.name) && other.concept() == class.concept()
     };
     if let Some(same) = to.list.iter().position(is_same) {
         return (same as u8, Reason::Same);
     }
     let concepts = Concepts::shipped();
     let of = |wanted: &str| position(to, wanted);
-    let Some(concept) = concept_of(class) else { return rest(of(concepts.catch_all())) };
+    let Some(concept) = class.concept() else { return rest(of(concepts.catch_all()), to) };
     let same = of(concept).map(|at| (at, Reason::Same));
     let wider = || concepts.above(concept).find_map(of).map(|at| (at, Reason::Wider));
     let usual = || concepts.usual(concept).iter().find_map(|name| of(name));
     let found = same.or_else(wider).or_else(|| usual().map(|at| (at, Reason::Usual)));
     let catch_all = || (!concepts.is_nothing(concept)).then(|| of(concepts.catch_all())).flatten();
-    found.unwrap_or_else(|| rest(catch_all()))
+    found.unwrap_or_else(|| rest(catch_all(), to))
 }
 
-fn rest(catch_all: Option<u8>) -> (u8, Reason) {
-    catch_all.map_or((IGNORED, Reason::Nothing), |at| (at, Reason::Rest))
+fn rest(catch_all: Option<u8>, to: &ClassTable) -> (u8, Reason) {
+    catch_all.map_or((no_label(to), Reason::Nothing), |at| (at, Reason::Rest))
 }
+
+/// No label, in files that have no id for it: the class of noise, which scores leave out.
+fn no_label(to: &ClassTable) -> u8 {
+    let noise = position(to, NOISE).filter(|_| to.no_label.is_none());
+    noise.unwrap_or(IGNORED)
+}
+
+/// The concept of a class that stands for no label.
+const NOISE: &str = "noise";
 
 /// The class of a concept.
 fn position(table: &ClassTable, concept: &str) -> Option<u8> {
-    let at = table.list.iter().position(|class| concept_of(class) == Some(concept))?;
+    let at = table.list.iter().position(|class| class.concept() == Some(concept))?;
     Some(at as u8)
 }
 
-/// What a class means: as its table says, or else its name.
-fn concept_of(class: &Class) -> Option<&str> {
-    let concepts = Concepts::shipped();
-    concepts.named(class.concept.as_ref().unwrap_or(&class.name))
-}
-
-/// The indices of the classes, then free, then [`IGNORED`] for all others.
-fn padded(mut table: Vec<u8>, free: u8) -> Vec<u8> {
-    table.push(free);
-    table.resize(256, IGNORED);
+/// What each index becomes: the classes as given, then free, then no label for all others.
+fn table(classes: impl Iterator<Item = u8>, to: &ClassTable) -> Vec<u8> {
+    let mut table: Vec<u8> = classes.chain([to.free_index()]).collect();
+    table.resize(256, no_label(to));
     table
 }
 
@@ -147,7 +148,7 @@ fn target(table: &ClassTable, name: &str) -> Result<u8, Fault> {
     match index_of(table, name) {
         Ok(at) => Ok(at as u8),
         Err(_) if name == "free" => Ok(table.free_index()),
-        Err(_) if name == "ignored" => Ok(IGNORED),
+        Err(_) if name == "ignored" => Ok(no_label(table)),
         Err(_) => Err(unknown(table, name, ", free, ignored")),
     }
 }

@@ -2,18 +2,23 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::Concepts;
+
 /// The classes of a label set. A class's index is its place in `list`; free is the one after the last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassTable {
     /// The id that files write where nothing stands.
     pub free: u16,
+    /// The id that files write where there is no label, if the dialect has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_label: Option<u16>,
     /// The classes.
     pub list: Vec<Class>,
 }
 
 /// A class of a label set.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Class {
     /// Its id in files.
@@ -27,6 +32,13 @@ pub struct Class {
     /// `configs/dialects/concepts.toml`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub concept: Option<String>,
+}
+
+impl Class {
+    /// The concept that it means, of the shipped tree: what it says itself, or else its name's.
+    pub fn concept(&self) -> Option<&'static str> {
+        Concepts::shipped().named(self.concept.as_ref().unwrap_or(&self.name))
+    }
 }
 
 impl ClassTable {

@@ -105,6 +105,7 @@ fn classes_of(manifest: &Manifest) -> ClassTable {
     };
     ClassTable {
         free: u16::from(manifest.free),
+        no_label: None,
         list: manifest.classes.iter().map(class).collect(),
     }
 }

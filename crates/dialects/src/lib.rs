@@ -9,6 +9,7 @@
 mod class_map;
 mod class_table;
 mod concepts;
+pub mod describe;
 mod dialect;
 mod keyframe_labels;
 mod label_set;

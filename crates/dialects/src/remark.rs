@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::ClassTable;
 use crate::class_map::Reason;
-use crate::{ClassTable, IGNORED};
 
 /// Something that a map between classes loses or changes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -58,7 +58,8 @@ impl fmt::Display for Remark {
 /// Classes that become the same for the same kind of reason.
 struct Group {
     becomes: u8,
-    is_rest: bool,
+    /// [`Reason::Rest`] or [`Reason::Nothing`], or else that they became classes by their meaning.
+    reason: Option<Reason>,
     classes: Vec<usize>,
 }
 
@@ -87,11 +88,11 @@ pub(crate) fn remarks(
 fn groups(pairs: &[(u8, Reason)]) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (class, (becomes, reason)) in pairs.iter().enumerate() {
-        let (becomes, is_rest) = (*becomes, *reason == Reason::Rest);
-        let is_same = |group: &&mut Group| (group.becomes, group.is_rest) == (becomes, is_rest);
+        let reason = Some(*reason).filter(|r| matches!(r, Reason::Rest | Reason::Nothing));
+        let is_same = |group: &&mut Group| (group.becomes, group.reason) == (*becomes, reason);
         match groups.iter_mut().find(is_same) {
             Some(group) => group.classes.push(class),
-            None => groups.push(Group { becomes, is_rest, classes: vec![class] }),
+            None => groups.push(Group { becomes: *becomes, reason, classes: vec![class] }),
         }
     }
     groups
@@ -100,8 +101,8 @@ fn groups(pairs: &[(u8, Reason)]) -> Vec<Group> {
 /// What happens to classes that become the same; `None` if they mean the same too.
 fn kind(group: &Group, pairs: &[(u8, Reason)]) -> Option<RemarkKind> {
     match group.classes.as_slice() {
-        _ if group.becomes == IGNORED => Some(RemarkKind::Dropped),
-        _ if group.is_rest => Some(RemarkKind::Rest),
+        _ if group.reason == Some(Reason::Nothing) => Some(RemarkKind::Dropped),
+        _ if group.reason == Some(Reason::Rest) => Some(RemarkKind::Rest),
         [class] if pairs[*class].1 == Reason::Same => None,
         [_] => Some(RemarkKind::TakenAs),
         _ => Some(RemarkKind::Merged),

@@ -38,10 +38,10 @@ fn named(names: &[&str]) -> ClassTable {
     let class = |(id, name): (usize, &&str)| Class {
         id: id as u16,
         name: (*name).to_owned(),
-        is_ignored: false,
-        concept: None,
+        ..Class::default()
     };
-    ClassTable { free: 1000, list: names.iter().enumerate().map(class).collect() }
+    let list = names.iter().enumerate().map(class).collect();
+    ClassTable { free: 1000, no_label: Some(255), list }
 }
 
 fn of(name: &str) -> ClassTable {
@@ -100,7 +100,9 @@ fn a_set_maps_to_itself_without_a_remark() {
         let free = table.free_index();
         let unchanged: Vec<u8> = (0..=free).collect();
         assert_eq!(map.table()[..unchanged.len()], unchanged, "{name}");
-        assert_eq!(map.table()[255], IGNORED);
+        let is_noise = |class: &Class| class.concept() == Some("noise") && table.no_label.is_none();
+        let no_label = table.list.iter().position(is_noise).map_or(IGNORED, |at| at as u8);
+        assert_eq!(map.table()[255], no_label, "{name}");
     }
 }
 
@@ -190,4 +192,48 @@ fn what_one_is_told_goes_before_the_rule() {
     let fault = told(&[("bus", "lorry")]).unwrap_err().to_string();
     assert!(fault.contains("one of road") && fault.contains("`lorry`"), "{fault}");
     assert!(told(&[("lorry", "bus")]).unwrap_err().expected.contains("one of others, barrier"));
+}
+
+/// `learning_map` of semantic-kitti.yaml, where it leads to a class: raw name and training name.
+const LEARNING_MAP: [(&str, &str); 30] = [
+    ("car", "car"),
+    ("bicycle", "bicycle"),
+    ("bus", "other-vehicle"),
+    ("motorcycle", "motorcycle"),
+    ("on-rails", "other-vehicle"),
+    ("truck", "truck"),
+    ("other-vehicle", "other-vehicle"),
+    ("person", "person"),
+    ("bicyclist", "bicyclist"),
+    ("motorcyclist", "motorcyclist"),
+    ("road", "road"),
+    ("parking", "parking"),
+    ("sidewalk", "sidewalk"),
+    ("other-ground", "other-ground"),
+    ("building", "building"),
+    ("fence", "fence"),
+    ("lane-marking", "road"),
+    ("vegetation", "vegetation"),
+    ("trunk", "trunk"),
+    ("terrain", "terrain"),
+    ("pole", "pole"),
+    ("traffic-sign", "traffic-sign"),
+    ("moving-car", "car"),
+    ("moving-bicyclist", "bicyclist"),
+    ("moving-person", "person"),
+    ("moving-motorcyclist", "motorcyclist"),
+    ("moving-on-rails", "other-vehicle"),
+    ("moving-bus", "other-vehicle"),
+    ("moving-truck", "truck"),
+    ("moving-other-vehicle", "other-vehicle"),
+];
+
+#[test]
+fn semantickittis_raw_names_become_what_its_own_map_says() {
+    let (raw, training) = (LEARNING_MAP.map(|pair| pair.0), of("taxonomies/semantickitti"));
+    let map = ClassMap::between(&named(&raw), &training, &[]).unwrap();
+    for (at, (raw, expected)) in LEARNING_MAP.iter().enumerate() {
+        let found = &training.list[usize::from(map.table()[at])].name;
+        assert_eq!(found, expected, "{raw}");
+    }
 }

@@ -1,5 +1,7 @@
 //! The command line: what all commands share, and a file for each that has much of its own.
 
+mod convert;
+mod describe;
 mod label;
 mod log;
 mod quality;
@@ -9,6 +11,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use convert::ConvertArgs;
+pub(crate) use describe::DescribeArgs;
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use quality::QualityArgs;
@@ -51,6 +55,10 @@ pub(crate) enum Command {
     Check(Box<CheckArgs>),
     /// Measure how right labels are.
     Quality(Box<QualityArgs>),
+    /// Turn labels of one dialect into another's.
+    Convert(Box<ConvertArgs>),
+    /// Tell which dialect label files look like, what they hold, and what is odd about them.
+    Describe(DescribeArgs),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.
