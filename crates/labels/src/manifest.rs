@@ -25,6 +25,9 @@ pub struct Manifest {
     pub config_hash: String,
     /// [`inputs_hash`](crate::inputs_hash) of what was read.
     pub inputs_hash: String,
+    /// The dialect of the files; none where they are Occ3D's, with classes of our own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dialect: Option<String>,
     /// Which raw name means which class.
     pub taxonomy: TaxonomyRecord,
     /// The grid of every array.
@@ -180,6 +183,7 @@ pub(crate) mod tests {
             config_hash: json_hash(&config),
             config,
             inputs_hash: "00".to_owned(),
+            dialect: None,
             taxonomy: TaxonomyRecord { name: "occ3d-nuscenes".to_owned(), hash: "11".to_owned() },
             grid: GridRecord::new("ego", &spec()),
             classes: vec![ClassRecord { id: 0, name: "others".to_owned() }],

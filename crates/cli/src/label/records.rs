@@ -58,6 +58,7 @@ pub(crate) fn manifest(
         config: record.config.clone(),
         config_hash: record.config_hash.clone(),
         inputs_hash: inputs_hash(&record.inputs),
+        dialect: None,
         taxonomy: TaxonomyRecord {
             name: job.opened.config.taxonomy.file.clone(),
             hash: job.opened.taxonomy_hash.clone(),
