@@ -98,13 +98,13 @@ impl LabelSet {
 
 fn classes_of(manifest: &Manifest) -> ClassTable {
     let class = |record: &occlabel_labels::ClassRecord| Class {
-        id: u16::from(record.id),
+        id: record.id,
         name: record.name.clone(),
         is_ignored: false,
         concept: None,
     };
     ClassTable {
-        free: u16::from(manifest.free),
+        free: manifest.free,
         no_label: None,
         list: manifest.classes.iter().map(class).collect(),
     }

@@ -65,7 +65,9 @@ pub(crate) fn manifest(
         },
         grid: GridRecord::new(frame, &rules.spec),
         classes: class_records(&rules.taxonomy.names),
-        free: rules.taxonomy.free,
+        free: u16::from(rules.taxonomy.free),
+        notes: Vec::new(),
+        dialect: None,
         scenes: scene_records(plan, entries),
         files,
     }
@@ -85,6 +87,6 @@ fn scene_records(plan: &Plan, entries: &[JournalEntry]) -> BTreeMap<String, Scen
 }
 
 fn class_records(names: &[String]) -> Vec<ClassRecord> {
-    let record = |(id, name): (usize, &String)| ClassRecord { id: id as u8, name: name.clone() };
+    let record = |(id, name): (usize, &String)| ClassRecord { id: id as u16, name: name.clone() };
     names.iter().enumerate().map(record).collect()
 }
