@@ -96,9 +96,41 @@ impl NumberArray {
     /// If there is not one number for each place of the shape.
     pub fn new<T: Number>(shape: &[usize], values: &[T]) -> Self {
         assert_eq!(values.len(), shape.iter().product::<usize>(), "a number for each place");
-        let mut bytes = Vec::with_capacity(values.len() * size_of::<T>());
+        let mut bytes = Vec::with_capacity(size_of_val(values));
         values.iter().for_each(|value| value.put(&mut bytes));
         Self { number: T::TYPE, shape: shape.to_vec(), bytes }
+    }
+
+    /// An array of whole numbers of a type; digits that the type has no room for are cut off.
+    ///
+    /// # Panics
+    /// If there is not one number for each place of the shape.
+    pub fn of_whole(number: NumberType, shape: &[usize], values: &[i64]) -> Self {
+        if number.is_float() {
+            let values: Vec<f64> = values.iter().map(|&value| value as f64).collect();
+            return Self::of_floats(number, shape, &values);
+        }
+        assert_eq!(values.len(), shape.iter().product::<usize>(), "a number for each place");
+        let digits =
+            values.iter().flat_map(|value| value.to_le_bytes().into_iter().take(number.size()));
+        Self { number, shape: shape.to_vec(), bytes: digits.collect() }
+    }
+
+    /// An array of numbers of a type; what stands after the point is cut off if the type has none.
+    ///
+    /// # Panics
+    /// If there is not one number for each place of the shape, or the type is [`NumberType::F16`].
+    pub fn of_floats(number: NumberType, shape: &[usize], values: &[f64]) -> Self {
+        match number {
+            NumberType::F64 => Self::new(shape, values),
+            NumberType::F32 => {
+                Self::new(shape, &values.iter().map(|&value| value as f32).collect::<Vec<_>>())
+            }
+            NumberType::F16 => panic!("numbers of 16 bits are read only"),
+            _ => {
+                Self::of_whole(number, shape, &values.iter().map(|&v| v as i64).collect::<Vec<_>>())
+            }
+        }
     }
 
     /// How many numbers there are.

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 #[derive(Debug, Args)]
-#[command(after_help = "Labels keep their grid: nothing is resampled. What is lost is printed, and \
-    stands in the manifest.\nExit codes: 0 complete, 1 failed, 2 usage, 130 interrupted.")]
+#[command(
+    after_help = "Labels keep their grid: nothing is resampled. What is lost is printed, and \
+    stands in the manifest.\nExit codes: 0 complete, 1 failed, 2 usage, 130 interrupted."
+)]
 pub(crate) struct ConvertArgs {
     /// The labels to convert: a folder.
     #[arg(value_name = "DIR")]

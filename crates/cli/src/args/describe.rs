@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 #[derive(Debug, Args)]
-#[command(after_help = "Exit codes: 0 described, 1 it cannot be read, or --strict and suspicious, \
-    2 usage.")]
+#[command(
+    after_help = "Exit codes: 0 described, 1 it cannot be read, or --strict and suspicious, \
+    2 usage."
+)]
 pub(crate) struct DescribeArgs {
     /// A label file, or a folder of them.
     #[arg(value_name = "FILE")]

@@ -85,7 +85,9 @@ fn grid_notes(job: &Job) -> Vec<String> {
     let (published, mut notes) = (&job.to.grid, Vec::new());
     if job.set.frame() != published.frame {
         let (ours, theirs) = (job.set.frame(), &published.frame);
-        notes.push(format!("frame: the grid stands in the {ours} frame, published in the {theirs} frame"));
+        notes.push(format!(
+            "frame: the grid stands in the {ours} frame, published in the {theirs} frame"
+        ));
     }
     if let Ok(spec) = published.spec()
         && spec != *job.set.spec()

@@ -108,7 +108,9 @@ fn is_at(pattern: &str, path: &Path) -> bool {
 /// Whether a name has the fixed texts of a part of a pattern, in their order.
 fn is_like(part: &str, name: &str) -> bool {
     let mut texts = part.split('{').map(|text| text.split_once('}').map_or(text, |(_, text)| text));
-    let Some(mut rest) = texts.next().and_then(|first| name.strip_prefix(first)) else { return false };
+    let Some(mut rest) = texts.next().and_then(|first| name.strip_prefix(first)) else {
+        return false;
+    };
     let mut is_exact = true;
     for text in texts {
         let Some((_, after)) = rest.rsplit_once(text) else { return false };
