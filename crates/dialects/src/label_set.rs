@@ -294,12 +294,13 @@ fn dialect_of(manifest: &Manifest) -> Result<Dialect, Fault> {
 
 fn classes_of(manifest: &Manifest) -> ClassTable {
     let class = |record: &occlabel_labels::ClassRecord| Class {
-        id: u16::from(record.id),
+        id: record.id,
         name: record.name.clone(),
         is_ignored: false,
+        concept: None,
     };
     ClassTable {
-        free: u16::from(manifest.free),
+        free: manifest.free,
         no_label: None,
         list: manifest.classes.iter().map(class).collect(),
     }

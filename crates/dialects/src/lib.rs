@@ -7,8 +7,11 @@
 //! `[x][y][z]` from the lower corner, classes counted from 0, free the number after the last.
 //! [`Dialect::encode`] is the way back.
 
+mod class_map;
 mod class_table;
+mod concepts;
 mod decode;
+pub mod describe;
 mod dialect;
 mod encode;
 mod guess;
@@ -19,11 +22,14 @@ mod layout;
 mod order;
 mod path_pattern;
 mod poses;
+mod remark;
 mod rows;
 mod shipped;
 mod values;
 
+pub use class_map::{ClassMap, Reason};
 pub use class_table::{Class, ClassTable};
+pub use concepts::Concepts;
 pub use dialect::{Dialect, DialectGrid};
 pub use encode::{Encoded, Note};
 pub use keyframe_labels::{IGNORED, KeyframeLabels, Wanted};
@@ -32,3 +38,4 @@ pub use layout::{Array, Arrays, Bits, Column, Element, Holds, Layout, Rows, Tabl
 pub use order::{Axes, Axis, Order};
 pub use path_pattern::PathPattern;
 pub use poses::ScenePoses;
+pub use remark::{Remark, RemarkKind};

@@ -42,6 +42,12 @@ impl NpzFile {
         &self.path
     }
 
+    /// The names of the arrays, in the order of the file.
+    pub fn names(&self) -> Vec<String> {
+        let names = (0..self.zip.len()).filter_map(|at| self.zip.name_for_index(at));
+        names.filter_map(|name| name.strip_suffix(".npy")).map(str::to_owned).collect()
+    }
+
     /// Whether there is an array of a name.
     pub fn holds(&self, name: &str) -> bool {
         self.zip.index_for_name(&format!("{name}.npy")).is_some()

@@ -63,7 +63,7 @@ pub(crate) fn manifest(
         notes: target.notes(grid),
         grid: GridRecord::new(grid.frame(), target.spec(grid)),
         classes: class_records(&taxonomy.names),
-        free: taxonomy.free,
+        free: u16::from(taxonomy.free),
         scenes: scene_records(plan, entries),
         files: files_of(target, entries),
     }
@@ -95,6 +95,6 @@ fn scene_records(plan: &Plan, entries: &[JournalEntry]) -> BTreeMap<String, Scen
 }
 
 fn class_records(names: &[String]) -> Vec<ClassRecord> {
-    let record = |(id, name): (usize, &String)| ClassRecord { id: id as u8, name: name.clone() };
+    let record = |(id, name): (usize, &String)| ClassRecord { id: id as u16, name: name.clone() };
     names.iter().enumerate().map(record).collect()
 }
