@@ -10,10 +10,12 @@ mod report;
 mod scene_run;
 mod sweep_reader;
 mod tally;
+mod target_dialect;
 mod targets;
 mod workers;
 
 use occlabel_core::Fault;
+use occlabel_dialects::Dialect;
 use occlabel_labels::{
     Begun, JournalEntry, LabelTree, Manifest, RESUME_DIFFERS, Resume, RunFiles, RunRecord, begin,
 };
@@ -21,7 +23,7 @@ use occlabel_labels::{
 use crate::args::{LabelArgs, OnError, ResumeArg};
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
-use crate::input::{Opened, open};
+use crate::input::{Opened, Stead, open_with, published_grid};
 use crate::interrupt::Interrupt;
 use crate::label::findings::Findings;
 use crate::label::plan::Plan;
@@ -52,9 +54,11 @@ impl Job<'_> {
 pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> {
     let interrupt = Interrupt::listen();
     let threads = start_threads(args.jobs);
-    let opened = open(&args.log, &args.config)?;
+    let dialect = args.dialect.as_deref().map(Dialect::named).transpose().map_err(Stop::usage)?;
+    let grid = dialect.as_ref().map(published_grid).transpose()?;
+    let opened = open_with(&args.log, &args.config, &Stead { grid, ..Stead::default() })?;
     let tree = LabelTree::new(&args.output);
-    let targets = Targets::new(&opened, &args.also).map_err(Stop::usage)?;
+    let targets = Targets::new(&opened, dialect.as_ref(), &args.also).map_err(Stop::usage)?;
     let job = Job { args, opened: &opened, targets: &targets, console, tree, threads };
     let mut findings = Findings::default();
     let plan = Plan::make(&job, &mut findings)?;

@@ -68,7 +68,8 @@ impl PlannedScene {
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
         let points = job.opened.source.scene_points(&scene);
-        let (spec, evidence) = (job.targets.largest(), job.args.evidence);
+        let spec = job.targets.largest();
+        let evidence = job.args.evidence || job.targets.need_evidence();
         let model = MemoryModel::new(points, spec, scene.cameras.len(), evidence);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {

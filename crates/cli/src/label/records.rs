@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use occlabel_core::Fault;
+use occlabel_core::{Fault, Taxonomy};
 use occlabel_labels::{
     ClassRecord, FileRecord, GridRecord, InputMark, InputRecord, JournalEntry, Manifest, Program,
     RunRecord, SceneRecord, TaxonomyRecord, inputs_hash, json_hash,
@@ -59,11 +59,11 @@ pub(crate) fn manifest(
             name: job.opened.config.taxonomy.file.clone(),
             hash: job.opened.taxonomy_hash.clone(),
         },
-        dialect: None,
-        notes: target.notes(grid),
+        dialect: target.dialect().map(|dialect| dialect.name.clone()),
+        notes: target.notes.clone(),
         grid: GridRecord::new(grid.frame(), target.spec(grid)),
-        classes: class_records(&taxonomy.names),
-        free: u16::from(taxonomy.free),
+        classes: class_records(target, taxonomy),
+        free: target.dialect().map_or(taxonomy.free.into(), |dialect| dialect.classes.free),
         scenes: scene_records(plan, entries),
         files: files_of(target, entries),
     }
@@ -94,7 +94,13 @@ fn scene_records(plan: &Plan, entries: &[JournalEntry]) -> BTreeMap<String, Scen
     plan.scenes.iter().map(record).collect()
 }
 
-fn class_records(names: &[String]) -> Vec<ClassRecord> {
-    let record = |(id, name): (usize, &String)| ClassRecord { id: id as u16, name: name.clone() };
-    names.iter().enumerate().map(record).collect()
+fn class_records(target: &Target, taxonomy: &Taxonomy) -> Vec<ClassRecord> {
+    let record = |(id, name): (u16, &String)| ClassRecord { id, name: name.clone() };
+    match target.dialect() {
+        None => (0..).zip(&taxonomy.names).map(record).collect(),
+        Some(dialect) => {
+            let classes = dialect.classes.list.iter();
+            classes.map(|class| record((class.id, &class.name))).collect()
+        }
+    }
 }
