@@ -1,8 +1,9 @@
 //! Labels written in other dialects.
 
+use std::fs;
 use std::path::Path;
 
-use occlabel_dialects::{KeyframeLabels, LabelSet, Wanted};
+use occlabel_dialects::{Annotations, KeyframeLabels, LabelSet, Wanted};
 use serde_json::json;
 
 use crate::labelled::labelled;
@@ -134,4 +135,32 @@ fn an_unknown_dialect_exits_with_2_and_lists_those_there_are() {
     label.clone().with(&["--dialect", "occ3d"]).run().exits(2).tells(&["occ3d-nuscenes", "uniocc"]);
     label.clone().with(&["--dialect", "uniocc", "--evidence"]).run().exits(2);
     assert!(!label.output.exists() && !SCENE.is_empty());
+}
+
+#[test]
+fn occ3d_comes_with_its_list_of_keyframes() {
+    let log = TestLog::nano();
+    let label = in_dialect(&log, "occ3d-nuscenes");
+    let list: Annotations =
+        serde_json::from_slice(&fs::read(label.output.join("annotations.json")).unwrap()).unwrap();
+    assert_eq!(list.train_split, [SCENE]);
+    let (infos, tokens) = (&list.scene_infos[SCENE], log.keyframes());
+    assert_eq!(infos.len(), 3);
+    let mut at = &infos[&tokens[0]];
+    for (here, next) in tokens.iter().zip(&tokens[1..]) {
+        assert_eq!(at.next, *next);
+        at = &infos[next];
+        assert_eq!(at.prev, *here);
+        assert!(label.output.join(&at.gt_path).is_file());
+    }
+    assert_eq!((at.next.as_str(), infos[&tokens[0]].prev.as_str()), ("", ""));
+    let images = log.rows("sample_data");
+    for camera in infos.values().flat_map(|info| info.camera_sensor.values()) {
+        assert!(images.iter().any(|row| row["filename"] == camera.img_path.as_str()));
+        assert!(camera.intrinsic.is_some_and(|k| k[0][0] > 100.0));
+        assert!(camera.extrinsic.translation[2] > 0.5, "above the ground");
+    }
+    assert!(infos.values().all(|info| !info.camera_sensor.is_empty()));
+    let listed = manifest(&label.output)["files"].to_string();
+    assert!(listed.contains("annotations.json"));
 }

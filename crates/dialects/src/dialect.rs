@@ -20,6 +20,8 @@ pub struct Dialect {
     pub unobserved: String,
     /// What it has no words for.
     pub cannot_say: Vec<String>,
+    /// The file that lists all keyframes, if it has one: see [`Annotations`](crate::Annotations).
+    pub annotations: Option<String>,
     /// Its published grid.
     pub grid: DialectGrid,
     /// Its classes.

@@ -7,6 +7,7 @@
 //! `[x][y][z]` from the lower corner, classes counted from 0, free the number after the last.
 //! [`Dialect::encode`] is the way back.
 
+mod annotations;
 mod class_map;
 mod class_table;
 mod concepts;
@@ -27,6 +28,7 @@ mod rows;
 mod shipped;
 mod values;
 
+pub use annotations::{Annotations, CameraInfo, KeyframeInfo, scene_infos};
 pub use class_map::{ClassMap, Reason};
 pub use class_table::{Class, ClassTable};
 pub use concepts::Concepts;

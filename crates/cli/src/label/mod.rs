@@ -105,7 +105,8 @@ fn label_scenes(
     Ok(outcome)
 }
 
-/// The main set's manifest, which lists those of the others, written by now.
+/// The main set's manifest, which lists those of the others, and the lists of keyframes, all of them
+/// written by now.
 fn write_manifests(
     job: &Job,
     plan: &Plan,
@@ -113,14 +114,23 @@ fn write_manifests(
     entries: &[JournalEntry],
     begun: &Begun,
 ) -> Result<Manifest, Fault> {
-    let manifest =
-        |(grid, target)| (target, records::manifest(job, plan, record, entries, (grid, target)));
-    let mut targets = job.targets.all().map(manifest);
-    let (_, mut main) = targets.next().expect("a main set");
-    for (target, manifest) in targets {
-        let folder = target.folder.as_deref().unwrap_or_default();
-        main.files.push(begun.write_below(folder, &manifest)?);
+    let mut of_all = Vec::new();
+    for target in job.targets.all() {
+        let folder = target.1.folder.as_deref();
+        let mut manifest = records::manifest(job, plan, record, entries, target);
+        if let Some(stem) = target.1.list_stem() {
+            let list = records::annotations(plan, entries);
+            let file = begun.write_of_all(folder, stem, &list)?;
+            manifest.files.extend(target.1.own_record(&file));
+            of_all.push(file);
+        }
+        manifest.files.sort();
+        if folder.is_some() {
+            of_all.push(begun.write_of_all(folder, "manifest", &manifest)?);
+        }
     }
+    let mut main = records::manifest(job, plan, record, entries, job.targets.main());
+    main.files.extend(of_all);
     main.files.sort();
     Ok(main)
 }

@@ -7,12 +7,12 @@
 //!   OUTPUT/in-surroundocc/  labels in the grid and the files of a dialect
 //! ```
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use occlabel_core::{Blocks, Fault, GridSpec, OccupancyLabels};
-use occlabel_dialects::Dialect;
-use occlabel_labels::{TreePath, evidence_npz, labels_npz};
+use occlabel_core::{Blocks, Fault, GridSpec, OccupancyLabels, Scene};
+use occlabel_dialects::{Dialect, KeyframeInfo, scene_infos};
+use occlabel_labels::{FileRecord, TreePath, evidence_npz, labels_npz};
 use occlabel_pipeline::{Config, GridFrame, GridTable, Rules};
 use occlabel_voxelize::pool;
 
@@ -127,6 +127,11 @@ impl Targets {
         self.grids.iter().flat_map(|grid| grid.targets.iter().map(move |target| (grid, target)))
     }
 
+    /// The set that is asked for, with its grid.
+    pub(crate) fn main(&self) -> (&LabelledGrid, &Target) {
+        (&self.grids[0], &self.grids[0].targets[0])
+    }
+
     /// The grid of most voxels: what memory is planned by.
     pub(crate) fn largest(&self) -> &GridSpec {
         let specs = self.grids.iter().map(|grid| &grid.rules.spec);
@@ -136,6 +141,15 @@ impl Targets {
     /// Whether a set says what only evidence knows.
     pub(crate) fn need_evidence(&self) -> bool {
         self.grids.iter().any(LabelledGrid::needs_evidence)
+    }
+
+    /// What a list of keyframes says of a scene; nothing if no set has such a list.
+    pub(crate) fn infos(&self, scene: &Scene) -> Result<BTreeMap<String, KeyframeInfo>, Fault> {
+        let lists = self.all().filter_map(|(_, target)| target.dialect());
+        let listing = lists.into_iter().find(|dialect| dialect.annotations.is_some());
+        listing.map_or(Ok(BTreeMap::new()), |dialect| {
+            scene_infos(scene, |token| dialect.semantics_path(&scene.name, token))
+        })
     }
 
     /// Files without which a keyframe is not finished.
@@ -170,6 +184,16 @@ impl Target {
     /// The grid of its arrays.
     pub(crate) fn spec<'a>(&'a self, grid: &'a LabelledGrid) -> &'a GridSpec {
         self.pooled.as_ref().map_or(&grid.rules.spec, Blocks::coarse)
+    }
+
+    /// The name, without ending, of the file that lists all keyframes, if the dialect has one.
+    pub(crate) fn list_stem(&self) -> Option<&str> {
+        self.dialect()?.annotations.as_deref()?.strip_suffix(".json")
+    }
+
+    /// The record of a file as the set's own manifest has it; none if it is of another set.
+    pub(crate) fn own_record(&self, file: &FileRecord) -> Option<FileRecord> {
+        Some(FileRecord { path: self.own(&file.path)?, keyframe: None, ..file.clone() })
     }
 
     /// The dialect's name; none of our own layout.
@@ -229,7 +253,7 @@ impl Target {
     }
 
     /// A file of the output as a file of the set; none if it is of another.
-    pub(crate) fn own(&self, path: &TreePath) -> Option<TreePath> {
+    fn own(&self, path: &TreePath) -> Option<TreePath> {
         let own = match &self.folder {
             None => path.as_str(),
             Some(folder) => path.as_str().strip_prefix(folder.as_str())?.strip_prefix('/')?,
