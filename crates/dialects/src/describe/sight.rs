@@ -60,11 +60,12 @@ impl Sight {
 
     fn of_npz(path: &Path) -> Result<Self, Fault> {
         let mut file = NpzFile::open(path, u64::MAX)?;
+        let names = file.names();
         let seen = |name: String| match file.header(&name) {
             Ok(Some(header)) => SeenArray::of_header(name, &header),
             _ => SeenArray { name, number: None, shape: Vec::new() },
         };
-        let arrays = file.names().into_iter().map(seen).collect();
+        let arrays = names.into_iter().map(seen).collect();
         Ok(Self { packing: Packing::Npz, arrays })
     }
 
