@@ -67,7 +67,6 @@ pub(crate) fn manifest(
         classes: class_records(&rules.taxonomy.names),
         free: u16::from(rules.taxonomy.free),
         notes: Vec::new(),
-        dialect: None,
         scenes: scene_records(plan, entries),
         files,
     }
