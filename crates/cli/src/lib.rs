@@ -13,6 +13,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod completions;
 mod console;
 mod convert;
@@ -25,10 +26,12 @@ mod input;
 mod inspect;
 mod interrupt;
 mod label;
+mod label_pairs;
 mod lacks;
 mod presets;
 mod progress;
 mod quality;
+mod ray_origins;
 mod simulate;
 mod threads;
 
@@ -95,6 +98,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Label(args) => label::run(args, console),
         Command::Check(args) => check::run(args, console),
         Command::Quality(args) => quality::run(args, console),
+        Command::Compare(args) => compare::run(args, console),
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),

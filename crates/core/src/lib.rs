@@ -18,6 +18,7 @@
 //! ```
 
 mod aggregated;
+mod blocks;
 mod boxes;
 mod bundles;
 pub mod camera;
@@ -41,6 +42,7 @@ mod truth;
 mod walk;
 
 pub use aggregated::{AggregatedScene, BackgroundSweep, DropCounts, ObjectSweep};
+pub use blocks::Blocks;
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
 pub use bundles::{BUNDLE, Bundles, Reach};
 pub use camera::Camera;

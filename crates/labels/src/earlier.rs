@@ -87,6 +87,13 @@ impl Earlier {
         Ok(())
     }
 
+    /// Removes what tells of all keyframes: such as the manifests of label sets below the tree.
+    pub(crate) fn remove_files_of_all(&self, tree: &LabelTree) -> Result<(), Fault> {
+        let listed = self.manifest.iter().flat_map(|manifest| &manifest.files);
+        let of_all = listed.filter(|file| file.keyframe().is_none());
+        of_all.map(|file| remove_file(&tree.place(&file.path))).collect()
+    }
+
     fn paths(&self) -> BTreeSet<&TreePath> {
         let noted = self.journal.iter().flat_map(|entry| &entry.files);
         let listed = self.manifest.iter().flat_map(|manifest| &manifest.files);
@@ -116,20 +123,20 @@ fn reported_mark(files: &RunFiles) -> Option<String> {
 
 /// The keyframes of a manifest, each with its files.
 fn entries_of(manifest: &Manifest) -> Vec<JournalEntry> {
-    let mut files: BTreeMap<&str, Vec<FileRecord>> = BTreeMap::new();
+    let mut files: BTreeMap<(&str, &str), Vec<FileRecord>> = BTreeMap::new();
     for file in &manifest.files {
-        let (folder, _) = file.path.as_str().rsplit_once('/').unwrap_or_default();
-        files.entry(folder).or_default().push(file.clone());
+        let Some(keyframe) = file.keyframe() else { continue };
+        files.entry(keyframe).or_default().push(file.clone());
     }
     let keyframes = manifest.scenes.iter().flat_map(|(scene, record)| {
-        record.keyframes.iter().map(move |keyframe| (scene.clone(), keyframe.clone()))
+        record.keyframes.iter().map(move |keyframe| (scene.as_str(), keyframe.as_str()))
     });
-    keyframes
-        .filter_map(|(scene, keyframe)| {
-            let files = files.remove(format!("gts/{scene}/{keyframe}").as_str())?;
-            Some(JournalEntry { scene, keyframe, files, summary: Value::Null })
-        })
-        .collect()
+    let with_files = |keyframe| Some((keyframe, files.remove(&keyframe)?));
+    let entry = |((scene, keyframe), files): ((&str, &str), Vec<FileRecord>)| {
+        let (scene, keyframe) = (scene.to_owned(), keyframe.to_owned());
+        JournalEntry { scene, keyframe, files, summary: Value::Null }
+    };
+    keyframes.filter_map(with_files).map(entry).collect()
 }
 
 /// A run's record with its inputs by path.

@@ -18,13 +18,32 @@ pub struct FileRecord {
     pub bytes: u64,
     /// BLAKE3 of its bytes, in hexadecimal.
     pub blake3: String,
+    /// The scene and the token of its keyframe, where its folders do not tell: they do under
+    /// `gts/<scene>/<token>/`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keyframe: Option<(String, String)>,
 }
 
 impl FileRecord {
     /// The record of a file with these bytes.
     pub fn of_bytes(path: TreePath, bytes: &[u8]) -> Self {
         let blake3 = blake3::hash(bytes).to_hex().to_string();
-        Self { path, bytes: bytes.len() as u64, blake3 }
+        Self { path, bytes: bytes.len() as u64, blake3, keyframe: None }
+    }
+
+    /// The same as a file of a keyframe.
+    pub fn of_keyframe(mut self, scene: &str, token: &str) -> Self {
+        let tells = self.path.keyframe() == Some((scene, token));
+        self.keyframe = (!tells).then(|| (scene.to_owned(), token.to_owned()));
+        self
+    }
+
+    /// The scene and the token of its keyframe, if it belongs to one.
+    pub fn keyframe(&self) -> Option<(&str, &str)> {
+        match &self.keyframe {
+            Some((scene, token)) => Some((scene, token)),
+            None => self.path.keyframe(),
+        }
     }
 
     /// The record of a file as it stands, read and hashed.
@@ -33,7 +52,7 @@ impl FileRecord {
     /// If it cannot be read.
     pub fn of_file(tree: &LabelTree, path: TreePath) -> Result<Self, Fault> {
         let (bytes, blake3) = hash_file(&tree.place(&path))?;
-        Ok(Self { path, bytes, blake3 })
+        Ok(Self { path, bytes, blake3, keyframe: None })
     }
 
     /// Whether a file of the recorded length stands there. (It is not read.)

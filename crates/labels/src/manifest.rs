@@ -25,20 +25,20 @@ pub struct Manifest {
     pub config_hash: String,
     /// [`inputs_hash`](crate::inputs_hash) of what was read.
     pub inputs_hash: String,
-    /// The dialect of the files; none where they are Occ3D's, with classes of our own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dialect: Option<String>,
     /// Which raw name means which class.
     pub taxonomy: TaxonomyRecord,
+    /// The dialect of the files; none of our own layout, which is that of Occ3D-nuScenes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dialect: Option<String>,
+    /// What the arrays cannot say, and what was lost on the way to them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// The grid of every array.
     pub grid: GridRecord,
     /// The classes in order of their ids.
     pub classes: Vec<ClassRecord>,
     /// The id in `semantics` where a voxel is not occupied.
     pub free: u16,
-    /// What the files do not say as the labels did that they were made from, line by line.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
     /// The scenes by name.
     pub scenes: BTreeMap<String, SceneRecord>,
     /// Every file of the tree but this one and the report, in order of their paths.
@@ -186,12 +186,12 @@ pub(crate) mod tests {
             config_hash: json_hash(&config),
             config,
             inputs_hash: "00".to_owned(),
-            dialect: None,
             taxonomy: TaxonomyRecord { name: "occ3d-nuscenes".to_owned(), hash: "11".to_owned() },
+            dialect: None,
+            notes: Vec::new(),
             grid: GridRecord::new("ego", &spec()),
             classes: vec![ClassRecord { id: 0, name: "others".to_owned() }],
             free: 17,
-            notes: Vec::new(),
             scenes: [("s".to_owned(), SceneRecord { keyframes, ..Default::default() })].into(),
             files: Vec::new(),
         }
@@ -270,7 +270,7 @@ pub(crate) mod tests {
     prop_compose! {
         fn file()(path in "[a-z]{1,3}(/[a-z0-9][a-z0-9._-]{0,4}){0,3}", bytes in any::<u64>(),
                   blake3 in "[0-9a-f]{8}") -> FileRecord {
-            FileRecord { path: TreePath::new(path).unwrap(), bytes, blake3 }
+            FileRecord { path: TreePath::new(path).unwrap(), bytes, blake3, keyframe: None }
         }
     }
 

@@ -104,6 +104,13 @@ impl TreePath {
         Some(scene)
     }
 
+    /// The scene and the token of a path `gts/<scene>/<token>/<file>`.
+    pub fn keyframe(&self) -> Option<(&str, &str)> {
+        let (scene, rest) = self.0.strip_prefix("gts/")?.split_once('/')?;
+        let (token, file) = rest.split_once('/')?;
+        (!file.contains('/')).then_some((scene, token))
+    }
+
     fn of_keyframe(scene: &str, token: &str, file: &str) -> Result<Self, Fault> {
         check_name(scene, scene)?;
         check_name(token, token)?;

@@ -1,4 +1,5 @@
-//! The class and the instance of each voxel, by counting the points in it.
+//! The class and the instance of each voxel, by counting the points in it; and of larger voxels, by
+//! counting the voxels in them.
 //!
 //! Published generators let the last written point decide, a race on a GPU; counting makes the
 //! label independent of the order of points, and ties are broken by the taxonomy's `priority`.
@@ -25,6 +26,8 @@
 //! ```
 
 mod ballot;
+mod pool;
 mod voxelize;
 
+pub use pool::pool;
 pub use voxelize::{Vote, VoteRules, VoteSettings, voxelize};

@@ -1,5 +1,6 @@
 //! The command line: what all commands share, and a file for each that has much of its own.
 
+mod compare;
 mod convert;
 mod describe;
 mod label;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use compare::CompareArgs;
 pub(crate) use convert::ConvertArgs;
 pub(crate) use describe::DescribeArgs;
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
@@ -55,6 +57,8 @@ pub(crate) enum Command {
     Check(Box<CheckArgs>),
     /// Measure how right labels are.
     Quality(Box<QualityArgs>),
+    /// Show how two label sets differ; exit 0 if they do not.
+    Compare(CompareArgs),
     /// Turn labels of one dialect into another's.
     Convert(Box<ConvertArgs>),
     /// Tell which dialect label files look like, what they hold, and what is odd about them.
