@@ -61,6 +61,9 @@ impl Dialect {
     ///
     /// # Errors
     /// If the scene or the token is no plain name, or an extra has another shape than the dialect's.
+    ///
+    /// # Panics
+    /// If `semantics` holds an index of no class of this dialect.
     pub fn encode(
         &self,
         labels: &KeyframeLabels,

@@ -38,7 +38,12 @@ fn unknown(known: &[u8], ids: &[i64]) -> Refusal {
 }
 
 /// The id of each index, free's where files have none for [`IGNORED`].
+///
+/// # Panics
+/// If an index is that of no class, nor of free, nor [`IGNORED`].
 pub(crate) fn ids(table: &ClassTable, indices: &[u8]) -> Vec<i64> {
+    let is_known = |&index: &u8| index <= table.free_index() || index == IGNORED;
+    assert!(indices.iter().all(is_known), "indices of the dialect's classes");
     let mut ids = [i64::from(table.free); 256];
     for index in (0..=table.free_index()).chain([IGNORED]) {
         ids[usize::from(index)] = i64::from(table.id_of(index).unwrap_or(table.free));

@@ -1,9 +1,10 @@
 //! What is converted into what.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use occlabel_core::Fault;
 use occlabel_dialects::{ClassMap, Dialect, KeyframeKey, LabelSet};
+use occlabel_labels::{Manifest, SceneRecord};
 
 use crate::args::ConvertArgs;
 use crate::exit::Stop;
@@ -19,6 +20,8 @@ pub(crate) struct Job<'a> {
     pub(crate) map: ClassMap,
     /// The keyframes to convert, scene by scene.
     pub(crate) keys: Vec<KeyframeKey>,
+    /// What the labels' own manifest says of scenes.
+    pub(crate) scenes: BTreeMap<String, SceneRecord>,
 }
 
 impl<'a> Job<'a> {
@@ -29,7 +32,9 @@ impl<'a> Job<'a> {
         let map = ClassMap::between(set.classes(), &to.classes, &args.map).map_err(Stop::usage)?;
         let keys = chosen(&set, args).map_err(Stop::usage)?;
         check_tokens(&to, &keys)?;
-        Ok(Self { args, set, to, map, keys })
+        let manifest = Manifest::load(&args.input.join("manifest.json"))?;
+        let scenes = manifest.map(|manifest| manifest.scenes).unwrap_or_default();
+        Ok(Self { args, set, to, map, keys, scenes })
     }
 
     /// The scene of a keyframe in the tree that is written.

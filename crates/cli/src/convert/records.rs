@@ -1,9 +1,9 @@
 //! What a conversion writes about itself.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use occlabel_core::Fault;
-use occlabel_dialects::ClassTable;
+use occlabel_dialects::{Class, ClassTable, KeyframeKey};
 use occlabel_labels::{
     ClassRecord, GridRecord, InputRecord, JournalEntry, Manifest, Program, RunRecord, SceneRecord,
     TaxonomyRecord, inputs_hash, json_hash,
@@ -15,22 +15,32 @@ use crate::convert::report::Report;
 
 /// What makes this conversion what it is.
 pub(crate) fn run_record(job: &Job) -> Result<RunRecord, Fault> {
-    let mut inputs = Vec::new();
-    for path in job.keys.iter().flat_map(|key| job.set.files(key)) {
-        inputs.push(InputRecord::of_sweep(&job.args.input, path)?);
-    }
+    let files: BTreeSet<String> = job.keys.iter().flat_map(|key| files_of(job, key)).collect();
+    let record = |path: String| InputRecord::of_sweep(&job.args.input, path);
+    let inputs = files.into_iter().map(record).collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config(job), inputs))
+}
+
+/// The files of a keyframe that are there, from the folder that was given.
+fn files_of(job: &Job, key: &KeyframeKey) -> Vec<String> {
+    let arrays = job.set.dialect().layout.arrays().iter().map(|array| array.name.as_str());
+    let places = arrays.chain([""]).map(|name| job.set.place(key, name));
+    let inside = |place: std::path::PathBuf| {
+        let path = place.strip_prefix(&job.args.input).ok()?;
+        place.is_file().then(|| path.display().to_string())
+    };
+    places.filter_map(inside).collect()
 }
 
 /// Both dialects, and what each class becomes.
 fn config(job: &Job) -> Value {
     let (from, to) = (job.set.classes(), &job.to.classes);
-    let becomes = |(at, class): (usize, &occlabel_dialects::Class)| {
+    let becomes = |(at, class): (usize, &Class)| {
         (class.name.clone(), json!(name_of(to, job.map.table()[at])))
     };
     let classes: Map<String, Value> = from.list.iter().enumerate().map(becomes).collect();
     json!({ "convert": {
-        "from": job.set.dialect(),
+        "from": job.set.dialect().name,
         "to": job.to.name,
         "classes": classes,
         "scenes": job.args.scenes,
@@ -67,25 +77,24 @@ pub(crate) fn manifest(
         classes: classes.list.iter().map(class_record).collect(),
         free: classes.free,
         notes: report.lines(),
-        scenes: scenes(job, entries),
+        scenes: scenes(job),
         files,
     }
 }
 
-fn class_record(class: &occlabel_dialects::Class) -> ClassRecord {
+fn class_record(class: &Class) -> ClassRecord {
     ClassRecord { id: class.id, name: class.name.clone() }
 }
 
 /// The scenes: what the labels' own manifest says of them, with what was converted.
-fn scenes(job: &Job, entries: &[JournalEntry]) -> BTreeMap<String, SceneRecord> {
+fn scenes(job: &Job) -> BTreeMap<String, SceneRecord> {
     let mut scenes: BTreeMap<String, SceneRecord> = BTreeMap::new();
     for key in &job.keys {
-        let known = || job.set.scene(&key.scene).map(|scene| mapped(job, scene));
+        let known = || job.scenes.get(&key.scene).map(|scene| mapped(job, scene));
         let scene = scenes.entry(job.scene_of(key).to_owned());
         let scene = scene.or_insert_with(|| known().unwrap_or_default());
         scene.keyframes.push(key.token.clone());
     }
-    debug_assert_eq!(entries.len(), job.keys.len());
     scenes
 }
 

@@ -25,7 +25,7 @@ pub(crate) struct Report {
 impl Report {
     pub(crate) fn of(job: &Job, entries: &[JournalEntry]) -> Self {
         Self {
-            from: job.set.dialect().unwrap_or("occlabel").to_owned(),
+            from: job.set.dialect().name.clone(),
             to: job.to.name.clone(),
             keyframes: entries.len(),
             bytes: entries.iter().flat_map(|entry| &entry.files).map(|file| file.bytes).sum(),

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use occlabel_core::Fault;
 use occlabel_dialects::{KeyframeKey, KeyframeLabels, Wanted};
-use occlabel_labels::{Begun, FileRecord, Journal, JournalEntry, LabelTree};
+use occlabel_labels::{Begun, Journal, JournalEntry, LabelTree, TreePath};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -62,8 +62,10 @@ fn convert(job: &Job, tree: &LabelTree, key: &KeyframeKey) -> Result<JournalEntr
     job.map.apply(labels.semantics.values_mut());
     let scene = job.scene_of(key);
     let encoded = job.to.encode(&labels, scene, &key.token)?;
-    let written = encoded.files.iter().map(|(path, bytes)| tree.write(path, bytes));
-    let files = written.collect::<Result<Vec<FileRecord>, Fault>>()?;
+    let write = |(path, bytes): &(TreePath, Vec<u8>)| {
+        Ok(tree.write(path, bytes)?.of_keyframe(scene, &key.token))
+    };
+    let files = encoded.files.iter().map(write).collect::<Result<Vec<_>, Fault>>()?;
     let summary = Summary {
         notes: encoded.notes.iter().map(ToString::to_string).collect(),
         unobserved_as_free: unobserved_as_free(job, &labels),

@@ -7,28 +7,29 @@ use crate::{Array, Dialect, Element, Holds, Layout, Rows};
 
 /// A dialect that a file may be in. The more of it is so, the better it fits: in this order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fit {
+pub(crate) struct Fit {
     /// The dialect.
-    pub dialect: Dialect,
+    dialect: Dialect,
     /// Its arrays that are there, less those that are not and those that it does not know.
-    pub arrays: i64,
+    arrays: i64,
     /// Whether the grid has the published shape, as far as the file tells.
-    pub is_published_shape: bool,
+    is_published_shape: bool,
     /// Whether the file stands where the dialect has it.
-    pub is_at_its_path: bool,
+    is_at_its_path: bool,
 }
 
 impl Fit {
-    /// The dialects that a file may be in, those that fit best first.
-    pub(crate) fn all(path: &Path, sight: &Sight) -> Vec<Self> {
+    /// The dialects that fit a file best; several if nothing tells them apart.
+    pub(crate) fn best(path: &Path, sight: &Sight) -> Vec<Dialect> {
         let fit = |dialect| Self::of(dialect, path, sight);
-        let mut fits: Vec<_> = Dialect::all().into_iter().filter_map(fit).collect();
-        fits.sort_by_key(|fit| std::cmp::Reverse(fit.rank()));
-        fits
+        let fits: Vec<_> = Dialect::all().into_iter().filter_map(fit).collect();
+        let best = fits.iter().map(Self::rank).max();
+        let is_best = |fit: &Self| Some(fit.rank()) == best;
+        fits.into_iter().filter(is_best).map(|fit| fit.dialect).collect()
     }
 
     /// How well it fits.
-    pub(crate) fn rank(&self) -> (i64, bool, bool) {
+    fn rank(&self) -> (i64, bool, bool) {
         (self.arrays, self.is_published_shape, self.is_at_its_path)
     }
 

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::ClassTable;
-use crate::describe::VoxelTally;
+use crate::describe::{Examined, VoxelTally, ids};
+use crate::{ClassTable, Dialect, Layout};
 
 /// Something that looks wrong.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -33,10 +33,44 @@ impl Suspicion {
     }
 }
 
-/// What looks wrong with the voxels of keyframes.
-pub(crate) fn of_voxels(tally: &VoxelTally, classes: &ClassTable) -> Vec<Suspicion> {
+/// What looks wrong with keyframes, taken for those of a dialect.
+pub(crate) fn all(dialect: &Dialect, examined: &Examined) -> Vec<Suspicion> {
+    let mut suspicions = of_files(dialect, examined);
     let rules = [upside_down, outside_lidar, not_subset, empty, full];
-    rules.iter().filter_map(|rule| rule(tally, classes)).collect()
+    let of_voxels = rules.iter().filter_map(|rule| rule(&examined.tally, &dialect.classes));
+    suspicions.extend(of_voxels);
+    suspicions
+}
+
+fn of_files(dialect: &Dialect, examined: &Examined) -> Vec<Suspicion> {
+    let is_dense = matches!(dialect.layout, Layout::Npz(_) | Layout::VoxelFiles(_));
+    let all = Dialect::all();
+    let free: Vec<(&str, u16)> =
+        all.iter().map(|other| (other.name.as_str(), other.classes.free)).collect();
+    let another = || ids::free_of_another(&examined.ids, &dialect.classes, &free);
+    let masks = examined.odd_masks.iter().filter_map(mask_values);
+    [
+        refused(dialect, examined),
+        ids::outside_classes(&examined.ids, &dialect.classes),
+        is_dense.then(another).flatten(),
+    ]
+    .into_iter()
+    .flatten()
+    .chain(masks)
+    .collect()
+}
+
+fn refused(dialect: &Dialect, examined: &Examined) -> Option<Suspicion> {
+    let (_, why) = examined.first_refusal.as_ref()?;
+    let (count, all) = (examined.refused, examined.refused + examined.tally.keyframes);
+    let name = &dialect.name;
+    let text = format!("{count} of {all} keyframes cannot be read as {name}; the first: {why}");
+    Suspicion::of("unreadable", count, all, text)
+}
+
+fn mask_values((name, (count, all)): (&String, &(u64, u64))) -> Option<Suspicion> {
+    let text = format!("{count} of {all} values of {name} are neither 0 nor 1");
+    Suspicion::of("mask-values", *count, *all, text)
 }
 
 fn upside_down(tally: &VoxelTally, _: &ClassTable) -> Option<Suspicion> {

@@ -2,7 +2,7 @@
 
 use std::ops::AddAssign;
 
-use crate::describe::ground::ColumnCounts;
+use crate::describe::ground::{ColumnCounts, GroundLevels};
 use crate::{ClassTable, Concepts, IGNORED, KeyframeLabels};
 
 /// Counts of the voxels of keyframes, added up in any order.
@@ -26,6 +26,8 @@ pub struct VoxelTally {
     pub camera_outside_lidar: u64,
     /// How the ground lies in its columns.
     pub columns: ColumnCounts,
+    /// At which levels it lies near the origin.
+    pub ground: GroundLevels,
 }
 
 /// What `mask_lidar` says.
@@ -33,7 +35,7 @@ pub struct VoxelTally {
 pub struct LidarCounts {
     /// Voxels observed.
     pub observed: u64,
-    /// Voxels that are neither observed nor occupied.
+    /// Voxels that are labelled free, and not observed.
     pub unobserved: u64,
     /// Voxels that are occupied but not observed.
     pub occupied_outside: u64,
@@ -54,6 +56,7 @@ impl VoxelTally {
             camera: None,
             camera_outside_lidar: 0,
             columns: ColumnCounts::default(),
+            ground: GroundLevels::default(),
         }
     }
 
@@ -74,6 +77,7 @@ impl VoxelTally {
                 count(lidar.iter().zip(camera), |(l, c)| **l == 0 && **c != 0);
         }
         tally.columns = ColumnCounts::of(&labels.semantics, classes, &flat);
+        tally.ground = GroundLevels::of(&labels.spec, &labels.semantics, &flat);
         tally
     }
 
@@ -116,17 +120,18 @@ impl AddAssign for VoxelTally {
         };
         self.camera_outside_lidar += other.camera_outside_lidar;
         self.columns += other.columns;
+        self.ground += other.ground;
     }
 }
 
 impl LidarCounts {
     fn of(semantics: &[u8], mask: &[u8], classes: &ClassTable, flat: &[bool; 256]) -> Self {
-        let mut counts = Self::default();
+        let (mut counts, free) = (Self::default(), classes.free_index());
         for (class, seen) in semantics.iter().zip(mask) {
-            let is_occupied = *class < classes.free_index();
+            let (is_occupied, is_free) = (*class < free, *class == free);
             let is_outside = *seen == 0;
             counts.observed += u64::from(!is_outside);
-            counts.unobserved += u64::from(is_outside & !is_occupied);
+            counts.unobserved += u64::from(is_outside & is_free);
             counts.occupied_outside += u64::from(is_outside & is_occupied);
             counts.flat_outside += u64::from(is_outside & flat[usize::from(*class)]);
         }
