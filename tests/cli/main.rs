@@ -2,6 +2,7 @@
 
 mod also;
 mod arrays;
+mod compare;
 mod configuration;
 #[cfg(unix)]
 mod interrupted;

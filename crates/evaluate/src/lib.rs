@@ -1,4 +1,5 @@
-//! How right labels are: against an exactly known world, and against held-out sweeps.
+//! How right labels are: against an exactly known world, against held-out sweeps, and, in [`scores`],
+//! predictions against labels.
 //!
 //! Judging is counting: [`judge`] puts its questions to every voxel of a keyframe and returns a
 //! [`Tally`] of integers. Tallies of keyframes and scenes add up in any order; only [`Tally::quality`]
@@ -52,7 +53,10 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+pub mod compare;
 pub mod held_out;
+pub mod rays;
+pub mod scores;
 mod world_truth;
 
 pub use world_truth::{
