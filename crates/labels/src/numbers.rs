@@ -162,16 +162,38 @@ impl NumberArray {
         })
     }
 
-    /// The numbers as f64: exact but for whole ones beyond 2^53.
-    pub fn floats(&self) -> Vec<f64> {
+    /// A number by its place: exact but for whole ones beyond 2^53.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[inline]
+    pub fn float(&self, at: usize) -> f64 {
+        use NumberType::*;
+        let bytes = &self.bytes;
         match self.number {
-            NumberType::F64 => each(&self.bytes, f64::from_le_bytes),
-            NumberType::F32 => each(&self.bytes, |v| f64::from(f32::from_le_bytes(v))),
-            NumberType::F16 => each(&self.bytes, |v| half(u16::from_le_bytes(v))),
-            NumberType::U64 => each(&self.bytes, |v| u64::from_le_bytes(v) as f64),
-            _ => self.whole().into_iter().flatten().map(|v| v as f64).collect(),
+            Bool | U8 => f64::from(bytes[at]),
+            I8 => f64::from(bytes[at] as i8),
+            U16 => f64::from(u16::from_le_bytes(number_at(bytes, at))),
+            I16 => f64::from(i16::from_le_bytes(number_at(bytes, at))),
+            U32 => f64::from(u32::from_le_bytes(number_at(bytes, at))),
+            I32 => f64::from(i32::from_le_bytes(number_at(bytes, at))),
+            U64 => u64::from_le_bytes(number_at(bytes, at)) as f64,
+            I64 => i64::from_le_bytes(number_at(bytes, at)) as f64,
+            F16 => half(u16::from_le_bytes(number_at(bytes, at))),
+            F32 => f64::from(f32::from_le_bytes(number_at(bytes, at))),
+            F64 => f64::from_le_bytes(number_at(bytes, at)),
         }
     }
+
+    /// The numbers as f64: exact but for whole ones beyond 2^53.
+    pub fn floats(&self) -> Vec<f64> {
+        (0..self.len()).map(|at| self.float(at)).collect()
+    }
+}
+
+#[inline]
+fn number_at<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
+    bytes.as_chunks().0[at]
 }
 
 fn each<const N: usize, T>(bytes: &[u8], number: impl Fn([u8; N]) -> T) -> Vec<T> {
