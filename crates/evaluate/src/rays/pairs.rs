@@ -56,7 +56,7 @@ fn add_pairs(
     rays: &RaySet,
     pairs: &mut Vec<RayPair>,
 ) {
-    let mut fan = Fan::new(truth.spec, rays, origin);
+    let mut fan = Fan::new(truth, rays, origin);
     for azimuth in 0..rays.azimuths().len() {
         fan.turn(azimuth);
         let true_hits = fan.cast(truth, all(rays));
@@ -82,7 +82,7 @@ pub fn cast_rays(
     let azimuths = rays.azimuths().len();
     let free = |direction| RayEnd::Free { depth_m: leaves_grid_m(grid.spec, origin, &direction) };
     let mut ends: Vec<RayEnd> = rays.directions().map(free).collect();
-    let mut fan = Fan::new(grid.spec, rays, origin);
+    let mut fan = Fan::new(grid, rays, origin);
     for azimuth in 0..azimuths {
         fan.turn(azimuth);
         let hits = fan.cast(grid, all(rays));

@@ -1,6 +1,8 @@
 //! The voxels of one ray, one after the other.
 
-use super::ray::Axis;
+use nalgebra::Vector3;
+
+use super::ray::{Axis, Start};
 
 /// Starts farther away than this never come to the grid, voxels.
 const FAR: f64 = (1_u64 << 50) as f64;
@@ -17,10 +19,11 @@ pub(super) struct Walk {
 impl Walk {
     /// A ray at the first voxel of the grid on its way; none if it never comes there.
     #[inline]
-    pub(super) fn new(axes: [Axis; 3], shape: [usize; 3]) -> Option<Self> {
-        if !axes.iter().all(|axis| axis.start.abs() < FAR) {
+    pub(super) fn new(start: &Start, direction: &Vector3<f64>, shape: [usize; 3]) -> Option<Self> {
+        if !start.voxels.iter().all(|u| u.abs() < FAR) {
             return None;
         }
+        let axes = start.ray(direction);
         let voxel = axes.map(|axis| axis.first);
         let mut walk = Self { axes, shape: shape.map(|n| n as i64), voxel, leaves_m: [0.0; 3] };
         walk.look_ahead();
