@@ -17,8 +17,11 @@ use super::path::{Crossing, trace};
 use super::ray::{Axis, Start};
 use super::set::{MOST_PITCHES, RaySet};
 
-/// What the rays of a fan hit, pitch by pitch.
-pub(super) type FanHits = [Option<RayHit>; MOST_PITCHES];
+/// What the rays of a fan hit, pitch by pitch, where they hit anything.
+pub(super) type FanHits = [RayHit; MOST_PITCHES];
+
+/// Room for hits.
+pub(super) const NO_HITS: FanHits = [RayHit { flat: 0, depth_m: 0.0 }; MOST_PITCHES];
 
 /// The rays from one origin that have one azimuth.
 pub(super) struct Fan<'a> {
@@ -52,18 +55,22 @@ impl<'a> Fan<'a> {
             self.spec.flat_of(self.origin).is_some() && trace(line, [nx, ny], &mut self.path);
     }
 
-    /// What the `wanted` rays hit, a bit a pitch.
-    pub(super) fn cast(&self, grid: &RayGrid, wanted: u64) -> FanHits {
-        let mut hits = [None; MOST_PITCHES];
+    /// Casts the `wanted` rays; those that hit something. A bit a pitch.
+    pub(super) fn cast(&self, grid: &RayGrid, wanted: u64, hits: &mut FanHits) -> u64 {
         if self.is_sure {
-            Sweep { fan: self, grid, left: wanted, hits: &mut hits }.run();
-            return hits;
+            let mut sweep = Sweep { fan: self, grid, left: wanted, stopped: 0, hits };
+            sweep.run();
+            return sweep.stopped;
         }
+        let mut stopped = 0;
         for pitch in ones(wanted) {
             let direction = self.rays.direction(pitch, self.azimuth);
-            hits[pitch] = first_hit(grid, self.origin, &direction).hit();
+            if let Some(hit) = first_hit(grid, self.origin, &direction).hit() {
+                hits[pitch] = hit;
+                stopped |= 1 << pitch;
+            }
         }
-        hits
+        stopped
     }
 }
 
@@ -71,8 +78,9 @@ impl<'a> Fan<'a> {
 struct Sweep<'a> {
     fan: &'a Fan<'a>,
     grid: &'a RayGrid<'a>,
-    /// Rays that nothing has stopped yet, a bit a pitch.
+    /// Rays on their way, and rays that something has stopped, a bit a pitch.
     left: u64,
+    stopped: u64,
     hits: &'a mut FanHits,
 }
 
@@ -122,9 +130,12 @@ impl Sweep<'_> {
                 Sure(hit) => hit,
                 Unsure => self.look(pitch, crossing),
             };
-            self.left &= !(u64::from(hit.is_some()) << pitch);
-            self.hits[pitch] = hit;
+            if let Some(hit) = hit {
+                self.hits[pitch] = hit;
+                self.stopped |= 1 << pitch;
+            }
         }
+        self.left &= !self.stopped;
     }
 
     /// What a ray hits in a column, exactly.
@@ -154,7 +165,7 @@ impl Sweep<'_> {
 }
 
 /// The places of the ones in a word, ascending.
-fn ones(mut word: u64) -> impl Iterator<Item = usize> {
+pub(super) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let place = (word != 0).then(|| word.trailing_zeros() as usize)?;
         word &= word - 1;

@@ -26,11 +26,12 @@ pub(super) fn trace(line: [Axis; 2], shape: [usize; 2], path: &mut Vec<Crossing>
     let (x_end, y_end) = (end(x_line, shape[0]), end(y_line, shape[1]));
     let (mut x, mut y) = (x_line.first, y_line.first);
     let (mut x_m, mut y_m) = (x_line.leaves_m(x), y_line.leaves_m(y));
-    let (mut column, mut is_sure) = (x * shape[1] as i64 + y, true);
+    let (mut column, mut least_gap) = (x * shape[1] as i64 + y, f64::INFINITY);
     let x_step = x_line.step * shape[1] as i64;
     while x != x_end && y != y_end {
-        let out_m = x_m.min(y_m);
-        is_sure &= (x_m - y_m).abs() > TIE * out_m;
+        let out_m = if x_m < y_m { x_m } else { y_m };
+        let gap = (x_m - y_m).abs() - TIE * out_m;
+        least_gap = if gap < least_gap { gap } else { least_gap };
         path.push(Crossing { column: column as u32, out_m });
         if x_m < y_m {
             (x, column) = (x + x_line.step, column + x_step);
@@ -40,7 +41,7 @@ pub(super) fn trace(line: [Axis; 2], shape: [usize; 2], path: &mut Vec<Crossing>
             y_m = y_line.leaves_m(y);
         }
     }
-    is_sure
+    least_gap > 0.0
 }
 
 #[cfg(test)]

@@ -45,17 +45,19 @@ impl Walk {
     /// Moves on to the next voxel; where the last one was left, metres.
     #[inline]
     pub(super) fn advance(&mut self) -> f64 {
-        let [x, y, z] = self.leaves_m;
-        let axis = if x < y {
-            if x < z { 0 } else { 2 }
-        } else if y < z {
-            1
-        } else {
-            2
-        };
-        let left_m = self.leaves_m[axis];
-        self.voxel[axis] += self.axes[axis].step;
-        self.leaves_m[axis] = self.axes[axis].leaves_m(self.voxel[axis]);
+        let [x_m, y_m, z_m] = self.leaves_m;
+        match (x_m < y_m, x_m < z_m, y_m < z_m) {
+            (true, true, _) => self.cross::<0>(),
+            (false, _, true) => self.cross::<1>(),
+            _ => self.cross::<2>(),
+        }
+    }
+
+    #[inline(always)]
+    fn cross<const AXIS: usize>(&mut self) -> f64 {
+        let left_m = self.leaves_m[AXIS];
+        self.voxel[AXIS] += self.axes[AXIS].step;
+        self.leaves_m[AXIS] = self.axes[AXIS].leaves_m(self.voxel[AXIS]);
         left_m
     }
 
