@@ -16,6 +16,7 @@ mod check;
 mod completions;
 mod console;
 mod demo;
+mod evaluate;
 mod exit;
 mod format_flags;
 mod format_hint;
@@ -93,6 +94,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Label(args) => label::run(args, console),
         Command::Check(args) => check::run(args, console),
         Command::Quality(args) => quality::run(args, console),
+        Command::Evaluate(args) => evaluate::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),

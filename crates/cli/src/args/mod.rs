@@ -1,5 +1,6 @@
 //! The command line: what all commands share, and a file for each that has much of its own.
 
+mod evaluate;
 mod label;
 mod log;
 mod quality;
@@ -9,6 +10,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use quality::QualityArgs;
@@ -51,6 +53,8 @@ pub(crate) enum Command {
     Check(Box<CheckArgs>),
     /// Measure how right labels are.
     Quality(Box<QualityArgs>),
+    /// Score predictions by the benchmarks' own scores.
+    Evaluate(Box<EvaluateArgs>),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.

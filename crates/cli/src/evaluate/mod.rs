@@ -1,0 +1,68 @@
+//! `evaluate`: the benchmarks' scores of predictions.
+
+mod classes;
+mod mask;
+mod pairing;
+mod plan;
+mod report;
+mod stream;
+
+use occlabel_core::Fault;
+use occlabel_dialects::LabelSet;
+use occlabel_evaluate::scores::SceneAttributes;
+
+use crate::args::EvaluateArgs;
+use crate::console::Console;
+use crate::evaluate::pairing::Pairing;
+use crate::evaluate::plan::Plan;
+use crate::evaluate::report::Report;
+use crate::exit::{Outcome, Stop};
+use crate::threads::start_threads;
+
+pub(crate) fn run(args: &EvaluateArgs, console: &Console) -> Result<Outcome, Stop> {
+    let attributes = attributes(args).map_err(Stop::usage)?;
+    let open = |folder, dialect: &Option<String>| LabelSet::open(folder, dialect.as_deref());
+    let truth = open(&args.truth, &args.truth_dialect).map_err(Stop::usage)?;
+    let prediction = open(&args.prediction, &args.prediction_dialect).map_err(Stop::usage)?;
+    let pairing = Pairing::of(&truth, &prediction, args)?;
+    let plan = Plan::new(args, &truth, &prediction, &pairing)?;
+    plan.left_out.iter().for_each(|why| console.info(why));
+    tell_unknown(&pairing, &attributes, args, console);
+    start_threads(args.jobs);
+    let breakdown = stream::score(&plan, &truth, &prediction, &pairing, &attributes)?;
+    let report = Report { args, plan: &plan, pairing: &pairing, breakdown: &breakdown };
+    console.result(&if args.json { report.json() } else { report.table() });
+    match pairing.missing_fault(args) {
+        Some(missing) => {
+            console.warning("predictions", &missing);
+            Ok(Outcome::Degraded)
+        }
+        None => Ok(Outcome::Complete),
+    }
+}
+
+fn attributes(args: &EvaluateArgs) -> Result<SceneAttributes, Fault> {
+    let Some(file) = &args.attributes else { return Ok(SceneAttributes::default()) };
+    let place = file.display().to_string();
+    let text = std::fs::read_to_string(file).map_err(|error| {
+        Fault::new("attributes", &place, "a table of scenes", error.to_string())
+    })?;
+    SceneAttributes::parse(&text, &place)
+}
+
+/// Scenes that the table of attributes does not have.
+fn tell_unknown(
+    pairing: &Pairing,
+    attributes: &SceneAttributes,
+    args: &EvaluateArgs,
+    console: &Console,
+) {
+    let mut unknown: Vec<&str> = pairing.pairs.iter().map(|(key, _)| key.scene.as_str()).collect();
+    unknown.dedup();
+    unknown.retain(|scene| !attributes.knows(scene));
+    if let (Some(file), false) = (&args.attributes, unknown.is_empty()) {
+        let file = file.display();
+        let scenes = unknown.join(", ");
+        console.info(&format!("{file} does not have {} scenes: {scenes}", unknown.len()));
+    }
+}
