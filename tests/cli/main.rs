@@ -1,6 +1,8 @@
 //! The command line as the contract has it: what goes in, what comes out, and how it ends.
 
+mod also;
 mod arrays;
+mod compare;
 mod configuration;
 #[cfg(unix)]
 mod interrupted;

@@ -11,7 +11,7 @@ use occlabel_logs::{
     WaymoLog,
 };
 use occlabel_pipeline::{
-    Autos, Config, ReaderTables, Rules, parse_taxonomy, preset, shipped_taxonomy,
+    Autos, Config, GridTable, ReaderTables, Rules, parse_taxonomy, preset, shipped_taxonomy,
 };
 
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
@@ -165,6 +165,19 @@ fn read_config(args: &ConfigArgs) -> Result<(Option<String>, Config), Fault> {
             Ok((None, Config::from_layers(&place, base, Some(&file), &args.settings)?))
         }
     }
+}
+
+/// The `[grid]` of a configuration file.
+pub(crate) fn grid_of_file(path: &Path) -> Result<GridTable, Fault> {
+    #[derive(serde::Deserialize)]
+    struct File {
+        grid: GridTable,
+    }
+    let file: Result<File, _> = toml::from_str(&read_text(path)?);
+    file.map(|file| file.grid).map_err(|error| {
+        let expected = "a table [grid] with frame, min_m, max_m, voxel_size_m";
+        Fault::new("config", path.display().to_string(), expected, error.message())
+    })
 }
 
 /// Puts what is meant in place of every `"auto"`, and gives the taxonomy with its file's hash.

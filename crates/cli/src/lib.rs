@@ -13,6 +13,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod completions;
 mod console;
 mod demo;
@@ -24,10 +25,12 @@ mod input;
 mod inspect;
 mod interrupt;
 mod label;
+mod label_pairs;
 mod lacks;
 mod presets;
 mod progress;
 mod quality;
+mod ray_origins;
 mod simulate;
 mod threads;
 
@@ -95,6 +98,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Check(args) => check::run(args, console),
         Command::Quality(args) => quality::run(args, console),
         Command::Evaluate(args) => evaluate::run(args, console),
+        Command::Compare(args) => compare::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),

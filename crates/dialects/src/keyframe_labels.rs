@@ -1,6 +1,9 @@
 //! The labels of one keyframe, the same whatever dialect they were read from.
 
+use std::collections::BTreeMap;
+
 use occlabel_core::{GridSpec, VoxelGrid};
+use occlabel_labels::NumberArray;
 
 /// In `semantics`: the file has no label there, and scores leave it out.
 pub const IGNORED: u8 = 255;
@@ -21,4 +24,38 @@ pub struct KeyframeLabels {
     pub instances: Option<VoxelGrid<u16>>,
     /// Velocity in the grid frame, metres per second.
     pub flow: Option<VoxelGrid<[f32; 3]>>,
+    /// Arrays that only some dialects know, by the names that they share. Those of voxels are
+    /// `[x][y][z]` as all others, or `[x][y][z][component]`.
+    pub extras: BTreeMap<String, NumberArray>,
+}
+
+impl KeyframeLabels {
+    /// Labels of which only the classes are known.
+    pub fn of_semantics(spec: GridSpec, semantics: VoxelGrid<u8>) -> Self {
+        Self {
+            spec,
+            semantics,
+            mask_lidar: None,
+            mask_camera: None,
+            instances: None,
+            flow: None,
+            extras: BTreeMap::new(),
+        }
+    }
+}
+
+/// What is read beside semantics and masks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The numbers of the objects.
+    pub instances: bool,
+    /// The velocities.
+    pub flow: bool,
+    /// The arrays that only some dialects know.
+    pub extras: bool,
+}
+
+impl Wanted {
+    /// All that there is.
+    pub const ALL: Self = Self { instances: true, flow: true, extras: true };
 }

@@ -53,7 +53,9 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+pub mod compare;
 pub mod held_out;
+pub mod rays;
 pub mod scores;
 mod world_truth;
 

@@ -87,6 +87,13 @@ impl Earlier {
         Ok(())
     }
 
+    /// Removes what tells of all keyframes: such as the manifests of label sets below the tree.
+    pub(crate) fn remove_files_of_all(&self, tree: &LabelTree) -> Result<(), Fault> {
+        let listed = self.manifest.iter().flat_map(|manifest| &manifest.files);
+        let of_all = listed.filter(|file| file.keyframe().is_none());
+        of_all.map(|file| remove_file(&tree.place(&file.path))).collect()
+    }
+
     fn paths(&self) -> BTreeSet<&TreePath> {
         let noted = self.journal.iter().flat_map(|entry| &entry.files);
         let listed = self.manifest.iter().flat_map(|manifest| &manifest.files);

@@ -41,7 +41,10 @@ mod journal;
 mod json;
 mod lock;
 mod manifest;
+mod npy;
 mod npz;
+mod npz_file;
+mod numbers;
 mod pose_record;
 mod read;
 mod run;
@@ -57,7 +60,10 @@ pub use lock::WriterLock;
 pub use manifest::{
     ClassRecord, GridRecord, Manifest, Program, SceneRecord, TaxonomyRecord, TrackRecord,
 };
-pub use npz::{evidence_npz, labels_npz};
+pub use npy::NpyHeader;
+pub use npz::{evidence_npz, labels_npz, npz};
+pub use npz_file::{NpzFile, read_bounded, read_npy};
+pub use numbers::{Number, NumberArray, NumberType};
 pub use pose_record::{PoseRecord, RigidRecord};
 pub use read::{LabelArrays, read_evidence, read_labels};
 pub use run::{Begun, RESUME_DIFFERS, Resume, RunRecord, begin};

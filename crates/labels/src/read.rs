@@ -1,22 +1,14 @@
-//! Label arrays read back, whoever wrote them.
+//! The arrays of a label tree read back.
 //!
 //! The grid is known, and so is the size of every array: a file that claims more is refused before
-//! anything is allocated. Fortran order and big-endian numbers are read right; anything but plain
-//! numbers of the expected type, a pickle above all, is refused.
+//! anything is allocated. Anything but numbers of the expected type, a pickle above all, is refused.
 
-use std::fs::File;
-use std::io::{BufReader, Read};
 use std::path::Path;
 
-use ndarray::ArrayD;
-use ndarray_npy::{ReadNpyExt, ReadableElement};
 use occlabel_core::{Evidence, Fault, GridSpec, VoxelGrid};
-use zip::ZipArchive;
 
-use crate::files::read_fault;
-
-/// Longest header of an array that is accepted: version 1 of the format allows no more.
-const MAX_HEADER_BYTES: u64 = 1 << 16;
+use crate::npy::MAX_HEADER_BYTES;
+use crate::{NpzFile, NumberArray, NumberType};
 
 /// Largest file per voxel: the 21 bytes of all evidence, undeflated, and as much again.
 const MAX_FILE_BYTES_PER_VOXEL: u64 = 42;
@@ -39,9 +31,9 @@ pub struct LabelArrays {
 pub fn read_labels(path: &Path, spec: &GridSpec) -> Result<LabelArrays, Fault> {
     let mut npz = Npz::open(path, spec)?;
     Ok(LabelArrays {
-        semantics: npz.grid("semantics")?,
-        mask_lidar: npz.grid("mask_lidar")?,
-        mask_camera: npz.grid("mask_camera")?,
+        semantics: npz.bytes("semantics")?,
+        mask_lidar: npz.bytes("mask_lidar")?,
+        mask_camera: npz.bytes("mask_camera")?,
     })
 }
 
@@ -52,129 +44,72 @@ pub fn read_labels(path: &Path, spec: &GridSpec) -> Result<LabelArrays, Fault> {
 pub fn read_evidence(path: &Path, spec: &GridSpec) -> Result<Evidence, Fault> {
     let mut npz = Npz::open(path, spec)?;
     Ok(Evidence {
-        hits: npz.grid("hits")?,
-        crossings: npz.grid("crossings")?,
-        state: npz.grid("state")?,
-        instances: npz.grid("instances")?,
+        hits: npz.words("hits")?,
+        crossings: npz.words("crossings")?,
+        state: npz.bytes("state")?,
+        instances: npz.words("instances")?,
         flow: npz.vectors("flow")?,
-        camera_bits: npz.grid("camera_bits")?,
+        camera_bits: npz.words("camera_bits")?,
     })
-}
-
-/// A number type of the arrays, and how numpy writes it down: little-endian, big-endian.
-trait Number: ReadableElement + Copy {
-    const TYPES: [&'static str; 2];
-}
-
-impl Number for u8 {
-    const TYPES: [&'static str; 2] = ["|u1", "|u1"];
-}
-
-impl Number for u16 {
-    const TYPES: [&'static str; 2] = ["<u2", ">u2"];
-}
-
-impl Number for f32 {
-    const TYPES: [&'static str; 2] = ["<f4", ">f4"];
 }
 
 /// An npz file of which we know what must be in it.
 struct Npz<'a> {
-    path: &'a Path,
     spec: &'a GridSpec,
-    zip: ZipArchive<BufReader<File>>,
+    file: NpzFile,
 }
 
 impl<'a> Npz<'a> {
-    fn open(path: &'a Path, spec: &'a GridSpec) -> Result<Self, Fault> {
-        let unreadable = |error| read_fault(path, &error);
-        let file = File::open(path).map_err(unreadable)?;
-        let bytes = file.metadata().map_err(unreadable)?.len();
-        let max = spec.len() as u64 * MAX_FILE_BYTES_PER_VOXEL + 8 * MAX_HEADER_BYTES;
-        if bytes > max {
-            let expected = format!("at most {max} bytes for {} voxels", spec.len());
-            let found = format!("{bytes} bytes");
-            return Err(Fault::new("npz-size", path.display().to_string(), expected, found));
-        }
-        let zip = ZipArchive::new(BufReader::new(file)).map_err(|error| {
-            Fault::new("npz", path.display().to_string(), "a zip archive", error.to_string())
-        })?;
-        Ok(Self { path, spec, zip })
+    fn open(path: &Path, spec: &'a GridSpec) -> Result<Self, Fault> {
+        let max_bytes = spec.len() as u64 * MAX_FILE_BYTES_PER_VOXEL + 8 * MAX_HEADER_BYTES;
+        Ok(Self { spec, file: NpzFile::open(path, max_bytes)? })
     }
 
-    fn grid<T: Number>(&mut self, name: &str) -> Result<VoxelGrid<T>, Fault> {
-        let values = self.array(name, &self.spec.shape())?;
-        Ok(VoxelGrid::from_values(self.spec, values))
+    fn bytes(&mut self, name: &str) -> Result<VoxelGrid<u8>, Fault> {
+        let array = self.array(name, NumberType::U8, &self.spec.shape())?;
+        Ok(VoxelGrid::from_values(self.spec, array.bytes))
+    }
+
+    fn words(&mut self, name: &str) -> Result<VoxelGrid<u16>, Fault> {
+        let array = self.array(name, NumberType::U16, &self.spec.shape())?;
+        let words = array.bytes.as_chunks().0.iter().map(|&word| u16::from_le_bytes(word));
+        Ok(VoxelGrid::from_values(self.spec, words.collect()))
     }
 
     fn vectors(&mut self, name: &str) -> Result<VoxelGrid<[f32; 3]>, Fault> {
         let [x, y, z] = self.spec.shape();
-        let values: Vec<f32> = self.array(name, &[x, y, z, 3])?;
-        let (vectors, _) = values.as_chunks::<3>();
-        Ok(VoxelGrid::from_values(self.spec, vectors.to_vec()))
+        let array = self.array(name, NumberType::F32, &[x, y, z, 3])?;
+        let numbers = array.bytes.as_chunks().0.iter().map(|&word| f32::from_le_bytes(word));
+        let numbers: Vec<f32> = numbers.collect();
+        Ok(VoxelGrid::from_values(self.spec, numbers.as_chunks().0.to_vec()))
     }
 
-    /// The array's values in C order.
-    fn array<T: Number>(&mut self, name: &str, shape: &[usize]) -> Result<Vec<T>, Fault> {
-        let bytes = self.entry(name, (shape.iter().product::<usize>() * size_of::<T>()) as u64)?;
-        check_header::<T>(&bytes, shape)
-            .map_err(|(expected, found)| self.fault(name, expected, found))?;
-        match ArrayD::<T>::read_npy(&bytes[..]) {
-            Ok(array) => Ok(array.iter().copied().collect()),
-            Err(error) => Err(self.fault(name, "the values of an array", error.to_string())),
+    /// The array, which must be there, of this type and shape.
+    fn array(
+        &mut self,
+        name: &str,
+        number: NumberType,
+        shape: &[usize],
+    ) -> Result<NumberArray, Fault> {
+        let max_bytes = shape.iter().product::<usize>() * number.size();
+        let read = self.file.array(name, max_bytes as u64);
+        let expected = told(number, shape);
+        let fault = |found: String| {
+            let place = self.file.path().display().to_string();
+            Fault::new("npz-array", place, expected.clone(), found).record(name)
+        };
+        match read {
+            Ok(Some(array)) if array.number == number && array.shape == shape => Ok(array),
+            Ok(Some(array)) => Err(fault(told(array.number, &array.shape))),
+            Ok(None) => Err(fault("no array of this name".to_owned())),
+            Err(refused) => Err(fault(refused.found)),
         }
     }
-
-    /// The bytes of an entry that holds so many bytes of values, and a header.
-    fn entry(&mut self, name: &str, value_bytes: u64) -> Result<Vec<u8>, Fault> {
-        let max = value_bytes + MAX_HEADER_BYTES;
-        let mut bytes = Vec::new();
-        let read = match self.zip.by_name(&format!("{name}.npy")) {
-            Err(error) => Err(("an array of this name".to_owned(), error.to_string())),
-            Ok(entry) if entry.size() > max => {
-                Err((format!("at most {max} bytes"), format!("{} bytes declared", entry.size())))
-            }
-            Ok(entry) => entry
-                .take(max)
-                .read_to_end(&mut bytes)
-                .map_err(|error| ("a whole entry".to_owned(), error.to_string())),
-        };
-        read.map(|_| bytes).map_err(|(expected, found)| self.fault(name, expected, found))
-    }
-
-    fn fault(&self, name: &str, expected: impl Into<String>, found: impl Into<String>) -> Fault {
-        Fault::new("npz-array", self.path.display().to_string(), expected, found).record(name)
-    }
 }
 
-/// Compares the header, word for word, with those that numpy gives to such an array.
-fn check_header<T: Number>(bytes: &[u8], shape: &[usize]) -> Result<(), (String, String)> {
-    let shape: Vec<_> = shape.iter().map(usize::to_string).collect();
-    let shape = shape.join(",");
-    let header = |number: &str, fortran: &str| {
-        format!("{{'descr':'{number}','fortran_order':{fortran},'shape':({shape})}}")
-    };
-    let found = header_text(bytes).unwrap_or_else(|| "no header".to_owned());
-    let fits = |number: &&str| ["False", "True"].iter().any(|order| found == header(number, order));
-    if T::TYPES.iter().any(fits) {
-        return Ok(());
-    }
-    Err((header(T::TYPES[0], "False"), found.chars().take(200).collect()))
-}
-
-/// The header's dictionary, without blanks and without the comma before a closing bracket.
-///
-/// See the `.npy` format in numpy's own documentation (`numpy.lib.format`).
-fn header_text(bytes: &[u8]) -> Option<String> {
-    let version = *bytes.strip_prefix(b"\x93NUMPY")?.first()?;
-    let (text_at, length) = match version {
-        1 => (10, usize::from(u16::from_le_bytes(*bytes.get(8..)?.first_chunk()?))),
-        2 | 3 => (12, u32::from_le_bytes(*bytes.get(8..)?.first_chunk()?) as usize),
-        _ => return None,
-    };
-    let text = std::str::from_utf8(bytes.get(text_at..)?.get(..length)?).ok()?;
-    let text: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
-    Some(text.replace(",)", ")").replace(",}", "}"))
+fn told(number: NumberType, shape: &[usize]) -> String {
+    let sides: Vec<_> = shape.iter().map(usize::to_string).collect();
+    format!("'{}' in the shape ({})", number.descr(), sides.join(","))
 }
 
 #[cfg(test)]
@@ -274,7 +209,7 @@ mod tests {
     fn fault_35_big_endian_is_read_right() {
         let values: Vec<u8> = (0..60_u16).flat_map(|value| (value * 1000).to_be_bytes()).collect();
         let file = npz_with(&["hits"], &header(">u2", "False", SHAPE), &values);
-        let hits = Npz::open(file.path(), &spec()).unwrap().grid::<u16>("hits").unwrap();
+        let hits = Npz::open(file.path(), &spec()).unwrap().words("hits").unwrap();
         assert_eq!([*hits.at([0, 0, 1]), *hits.at([4, 3, 2])], [1000, 59_000]);
     }
 

@@ -14,7 +14,10 @@ use serde_json::Value;
 use crate::atomic::{create_dir, remove_file, write_file};
 use crate::differences::in_one_line;
 use crate::earlier::{Earlier, mark_report};
-use crate::{InputRecord, Journal, JournalEntry, Manifest, Program, RunFiles, WriterLock, json};
+use crate::{
+    FileRecord, InputRecord, Journal, JournalEntry, Manifest, Program, RunFiles, TreePath,
+    WriterLock, json,
+};
 
 /// The rule of a fault that refuses to go on with another run: exit code 2.
 pub const RESUME_DIFFERS: &str = "resume-differs";
@@ -97,6 +100,7 @@ pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Beg
     if !earlier.manifest_is_of(record) {
         remove_file(&files.manifest())?;
         remove_file(&files.report())?;
+        earlier.remove_files_of_all(files.tree())?;
     }
     let differences = if finished.is_empty() { Vec::new() } else { differences };
     let (files, record) = (files.clone(), record.clone());
@@ -104,6 +108,16 @@ pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Beg
 }
 
 impl Begun {
+    /// Writes the manifest of a label set that stands in a folder of the tree, and gives what the
+    /// tree's own manifest says of it.
+    ///
+    /// # Errors
+    /// If it cannot be written, or the folder is no plain name.
+    pub fn write_below(&self, folder: &str, manifest: &Manifest) -> Result<FileRecord, Fault> {
+        let path = TreePath::new(format!("{folder}/{}", self.files.manifest_name()))?;
+        self.files.tree().write(&path, &manifest.to_json())
+    }
+
     /// Ends the run: the report, then the manifest; the records of the unfinished run leave.
     ///
     /// # Errors

@@ -33,7 +33,12 @@ impl RunFiles {
 
     /// `manifest.json`: the run is finished.
     pub fn manifest(&self) -> PathBuf {
-        self.named("manifest", "json")
+        self.tree.root().join(self.manifest_name())
+    }
+
+    /// `manifest.json`, the name alone.
+    pub(crate) fn manifest_name(&self) -> String {
+        self.name("manifest", "json")
     }
 
     /// `report.json`: how the run went.
@@ -64,10 +69,14 @@ impl RunFiles {
     }
 
     fn named(&self, stem: &str, ending: &str) -> PathBuf {
-        self.tree.root().join(match self.shard {
+        self.tree.root().join(self.name(stem, ending))
+    }
+
+    fn name(&self, stem: &str, ending: &str) -> String {
+        match self.shard {
             None => format!("{stem}.{ending}"),
             Some((index, count)) => format!("{stem}.{index}-of-{count}.{ending}"),
-        })
+        }
     }
 }
 

@@ -53,7 +53,7 @@ impl LabelTree {
 
 /// A file's path within a tree, with `/`, made of plain names: it cannot lead out.
 ///
-/// A plain name is of `A-Z a-z 0-9 . _ -` and does not start with a dot.
+/// A plain name is of `A-Z a-z 0-9 . _ + -` and does not start with a dot.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String")]
 pub struct TreePath(String);
@@ -133,11 +133,11 @@ impl fmt::Display for TreePath {
 }
 
 fn check_name(name: &str, place: &str) -> Result<(), Fault> {
-    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-');
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '+' | '-');
     if !name.is_empty() && !name.starts_with('.') && name.chars().all(plain) {
         return Ok(());
     }
-    let expected = "a name of A-Z a-z 0-9 . _ - that does not start with a dot";
+    let expected = "a name of A-Z a-z 0-9 . _ + - that does not start with a dot";
     Err(Fault::new("name", place, expected, format!("`{name}`")))
 }
 

@@ -33,7 +33,7 @@ mod rules;
 mod standing;
 
 pub use aggregate_scene::{aggregate_scene, boxes_at, sort_scene};
-pub use config::{Autos, Config, EgoBox, GridFrame, Limit, ReaderTables};
+pub use config::{Autos, Config, EgoBox, GridFrame, GridTable, Limit, ReaderTables};
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
 pub use occlabel_occlusion::Lenses;

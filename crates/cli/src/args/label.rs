@@ -24,6 +24,10 @@ pub(crate) struct LabelArgs {
     /// Write `evidence.npz` beside `labels.npz`.
     #[arg(long)]
     pub(crate) evidence: bool,
+    /// Further grids of the same aggregation: voxel sizes in metres to pool the labels into, and
+    /// files with a `[grid]` to label in.
+    #[arg(long, value_delimiter = ',', value_name = "SIZE|FILE,...")]
+    pub(crate) also: Vec<String>,
     /// Threads. [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) jobs: Option<u16>,

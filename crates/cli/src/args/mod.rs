@@ -1,5 +1,6 @@
 //! The command line: what all commands share, and a file for each that has much of its own.
 
+mod compare;
 mod evaluate;
 mod label;
 mod log;
@@ -10,6 +11,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use compare::CompareArgs;
 pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
@@ -55,6 +57,8 @@ pub(crate) enum Command {
     Quality(Box<QualityArgs>),
     /// Score predictions by the benchmarks' own scores.
     Evaluate(Box<EvaluateArgs>),
+    /// Show how two label sets differ; exit 0 if they do not.
+    Compare(CompareArgs),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.

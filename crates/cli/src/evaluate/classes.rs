@@ -1,6 +1,6 @@
-//! Classes of truth and prediction.
+//! Which classes are things, move, or are left out.
 
-use occlabel_core::{ClassId, ClassSet, Fault, printable};
+use occlabel_core::{ClassId, ClassSet, Fault};
 use occlabel_dialects::ClassTable;
 
 /// What moves by itself, as label sets name it: the eight classes of the CVPR 2024 challenge, and
@@ -28,26 +28,6 @@ const MOVERS: [&str; 21] = [
     "animal",
     "caravan",
 ];
-
-/// Refuses two class tables that are not the same, name by name.
-///
-/// # Errors
-/// Which classes differ.
-pub(crate) fn check_same(truth: &ClassTable, prediction: &ClassTable) -> Result<(), Fault> {
-    let (ours, theirs) = (truth.names(), prediction.names());
-    if ours == theirs {
-        return Ok(());
-    }
-    let at = (0..ours.len().max(theirs.len()))
-        .find(|&at| ours.get(at) != theirs.get(at))
-        .expect("lists that differ do so somewhere");
-    let name = |names: &[String]| match names.get(at) {
-        Some(name) => format!("`{}` as class {at} of {}", printable(name), names.len()),
-        None => format!("{} classes", names.len()),
-    };
-    let fault = Fault::new("evaluate-classes", "prediction", name(&ours), name(&theirs));
-    Err(fault.hint("`occlabel convert` maps one dialect's classes to another's"))
-}
 
 /// The classes that are named, or those that move by themselves.
 ///
@@ -85,17 +65,7 @@ mod tests {
             name: (*name).into(),
             is_ignored: *name == "noise",
         };
-        ClassTable { free: 99, list: (0..).zip(names).map(class).collect() }
-    }
-
-    #[test]
-    fn tables_that_differ_are_refused_with_the_class() {
-        let truth = table(&["car", "road"]);
-        assert!(check_same(&truth, &table(&["car", "road"])).is_ok());
-        let fault = check_same(&truth, &table(&["car", "wall"])).unwrap_err().to_string();
-        assert!(fault.contains("`road` as class 1") && fault.contains("`wall`"), "{fault}");
-        let fault = check_same(&truth, &table(&["car"])).unwrap_err().to_string();
-        assert!(fault.contains("found 1 classes"), "{fault}");
+        ClassTable { free: 99, no_label: None, list: (0..).zip(names).map(class).collect() }
     }
 
     #[test]

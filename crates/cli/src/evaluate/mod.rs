@@ -2,43 +2,46 @@
 
 mod classes;
 mod mask;
-mod pairing;
+mod missing;
 mod plan;
 mod report;
 mod stream;
 
 use occlabel_core::Fault;
-use occlabel_dialects::LabelSet;
 use occlabel_evaluate::scores::SceneAttributes;
 
 use crate::args::EvaluateArgs;
 use crate::console::Console;
-use crate::evaluate::pairing::Pairing;
 use crate::evaluate::plan::Plan;
 use crate::evaluate::report::Report;
 use crate::exit::{Outcome, Stop};
+use crate::label_pairs::LabelPairs;
 use crate::threads::start_threads;
 
 pub(crate) fn run(args: &EvaluateArgs, console: &Console) -> Result<Outcome, Stop> {
     let attributes = attributes(args).map_err(Stop::usage)?;
-    let open = |folder, dialect: &Option<String>| LabelSet::open(folder, dialect.as_deref());
-    let truth = open(&args.truth, &args.truth_dialect).map_err(Stop::usage)?;
-    let prediction = open(&args.prediction, &args.prediction_dialect).map_err(Stop::usage)?;
-    let pairing = Pairing::of(&truth, &prediction, args)?;
-    let plan = Plan::new(args, &truth, &prediction, &pairing)?;
+    let pairs = open(args).map_err(Stop::usage)?;
+    let missing = missing::check(&pairs, args)?;
+    let plan = Plan::new(args, &pairs)?;
     plan.left_out.iter().for_each(|why| console.info(why));
-    tell_unknown(&pairing, &attributes, args, console);
+    tell_unknown(&pairs, &attributes, args, console);
     start_threads(args.jobs);
-    let breakdown = stream::score(&plan, &truth, &prediction, &pairing, &attributes)?;
-    let report = Report { args, plan: &plan, pairing: &pairing, breakdown: &breakdown };
+    let breakdown = stream::score(&plan, &pairs, &attributes)?;
+    let report = Report { args, plan: &plan, pairs: &pairs, breakdown: &breakdown };
     console.result(&if args.json { report.json() } else { report.table() });
-    match pairing.missing_fault(args) {
+    match missing {
         Some(missing) => {
             console.warning("predictions", &missing);
             Ok(Outcome::Degraded)
         }
         None => Ok(Outcome::Complete),
     }
+}
+
+fn open(args: &EvaluateArgs) -> Result<LabelPairs, Fault> {
+    let truth = (args.truth.as_path(), args.truth_dialect.as_deref());
+    let prediction = (args.prediction.as_path(), args.prediction_dialect.as_deref());
+    LabelPairs::open(truth, prediction, &args.scenes)
 }
 
 fn attributes(args: &EvaluateArgs) -> Result<SceneAttributes, Fault> {
@@ -52,12 +55,12 @@ fn attributes(args: &EvaluateArgs) -> Result<SceneAttributes, Fault> {
 
 /// Scenes that the table of attributes does not have.
 fn tell_unknown(
-    pairing: &Pairing,
+    pairs: &LabelPairs,
     attributes: &SceneAttributes,
     args: &EvaluateArgs,
     console: &Console,
 ) {
-    let mut unknown: Vec<&str> = pairing.pairs.iter().map(|(key, _)| key.scene.as_str()).collect();
+    let mut unknown: Vec<&str> = pairs.both.iter().map(|(key, _)| key.scene.as_str()).collect();
     unknown.dedup();
     unknown.retain(|scene| !attributes.knows(scene));
     if let (Some(file), false) = (&args.attributes, unknown.is_empty()) {

@@ -1,50 +1,46 @@
 //! What is scored, and by which rules: settled on the first keyframe.
 
-use occlabel_core::{Fault, GridSpec};
-use occlabel_dialects::{KeyframeLabels, LabelSet};
+use occlabel_core::Fault;
+use occlabel_dialects::{KeyframeLabels, LabelSet, Wanted};
 use occlabel_evaluate::scores::{Metrics, Scorer, ScoringRules};
 
 use crate::args::{EvaluateArgs, MaskArg, MetricArg};
-use crate::evaluate::pairing::Pairing;
 use crate::evaluate::{classes, mask};
 use crate::exit::Stop;
+use crate::label_pairs::LabelPairs;
 
 /// What is scored, and by which rules.
 pub(crate) struct Plan {
     pub(crate) scorer: Scorer,
+    pub(crate) wanted: Wanted,
     pub(crate) mask: MaskArg,
     /// Scores that `all` cannot have, and why.
     pub(crate) left_out: Vec<String>,
 }
 
 impl Plan {
-    pub(crate) fn new(
-        args: &EvaluateArgs,
-        truth: &LabelSet,
-        prediction: &LabelSet,
-        pairing: &Pairing,
-    ) -> Result<Self, Stop> {
-        let rules = rules(args, truth, prediction).map_err(Stop::usage)?;
-        let (true_key, predicted_key) = &pairing.pairs[0];
-        let first = truth.read(true_key)?;
-        let predicted = prediction.read(predicted_key)?;
+    pub(crate) fn new(args: &EvaluateArgs, pairs: &LabelPairs) -> Result<Self, Stop> {
+        let rules = rules(args, &pairs.a).map_err(Stop::usage)?;
+        let (true_key, predicted_key) = pairs.both.first().ok_or_else(|| nothing(args))?;
+        let wanted = wanted_for(&args.metrics);
+        let first = pairs.a.read_with(true_key, &wanted)?;
+        let predicted = pairs.b.read_with(predicted_key, &wanted)?;
         let (metrics, left_out) = metrics(&args.metrics, &first, &predicted);
         Ok(Self {
             scorer: Scorer::new(rules, metrics).map_err(Stop::usage)?,
+            wanted: Wanted {
+                instances: metrics.panoptic || metrics.velocity,
+                flow: metrics.velocity,
+                extras: false,
+            },
             mask: mask::choose(args.mask, &first),
             left_out,
         })
     }
 }
 
-fn rules(
-    args: &EvaluateArgs,
-    truth: &LabelSet,
-    prediction: &LabelSet,
-) -> Result<ScoringRules, Fault> {
+fn rules(args: &EvaluateArgs, truth: &LabelSet) -> Result<ScoringRules, Fault> {
     let table = truth.classes();
-    classes::check_same(table, prediction.classes())?;
-    check_grid(truth, prediction)?;
     Ok(ScoringRules {
         ignored: classes::ignored(table),
         things: classes::named(table, args.things.as_deref())?,
@@ -57,26 +53,16 @@ fn rules(
     })
 }
 
-fn check_grid(truth: &LabelSet, prediction: &LabelSet) -> Result<(), Fault> {
-    if truth.spec() == prediction.spec() && truth.frame() == prediction.frame() {
-        return Ok(());
-    }
-    let (expected, found) = (grid_name(truth), grid_name(prediction));
-    Err(Fault::new("evaluate-grid", "prediction", format!("the truth's grid, {expected}"), found))
+fn nothing(args: &EvaluateArgs) -> Fault {
+    let place = args.truth.display().to_string();
+    Fault::new("evaluate-keyframes", place, "keyframes", "none")
 }
 
-fn grid_name(set: &LabelSet) -> String {
-    let corner = |p: nalgebra::Point3<f64>| format!("{} {} {}", p.x, p.y, p.z);
-    let spec: &GridSpec = set.spec();
-    let ([x, y, z], size_m) = (spec.shape(), spec.size_m());
-    let (min, max) = (corner(spec.min_m()), corner(spec.max_m()));
-    format!(
-        "{x} x {y} x {z} voxels of {} x {} x {} m from {min} to {max} m in the {} frame",
-        size_m.x,
-        size_m.y,
-        size_m.z,
-        set.frame()
-    )
+/// What may have to be read for these metrics: arrays that are not there are no fault yet.
+fn wanted_for(asked: &[MetricArg]) -> Wanted {
+    let is_asked = |metric| asked.contains(&metric) || asked.contains(&MetricArg::All);
+    let velocity = is_asked(MetricArg::Velocity);
+    Wanted { instances: is_asked(MetricArg::Panoptic) || velocity, flow: velocity, extras: false }
 }
 
 /// The metrics that are asked for; of `all`, those that both sides can tell.

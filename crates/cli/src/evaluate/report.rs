@@ -5,14 +5,14 @@ use serde_json::json;
 
 use crate::args::EvaluateArgs;
 use crate::evaluate::mask;
-use crate::evaluate::pairing::Pairing;
 use crate::evaluate::plan::Plan;
+use crate::label_pairs::LabelPairs;
 
 /// All that is told.
 pub(crate) struct Report<'a> {
     pub(crate) args: &'a EvaluateArgs,
     pub(crate) plan: &'a Plan,
-    pub(crate) pairing: &'a Pairing,
+    pub(crate) pairs: &'a LabelPairs,
     pub(crate) breakdown: &'a Breakdown,
 }
 
@@ -23,8 +23,8 @@ impl Report<'_> {
             "truth": self.args.truth.display().to_string(),
             "prediction": self.args.prediction.display().to_string(),
             "mask": mask::name(self.plan.mask),
-            "missing": self.pairing.missing.len(),
-            "unused": self.pairing.unused,
+            "missing": self.pairs.only_a.len(),
+            "unused": self.pairs.only_b.len(),
             "scores": self.breakdown.all.scores(rules),
             "by_attribute": self.breakdown.scores(rules),
         });
@@ -42,7 +42,7 @@ impl Report<'_> {
         let (truth, prediction) = (self.args.truth.display(), self.args.prediction.display());
         let plural = if keyframes == 1 { "" } else { "s" };
         let mask = mask::name(self.plan.mask);
-        let unused = match self.pairing.unused {
+        let unused = match self.pairs.only_b.len() {
             0 => String::new(),
             unused => format!(", {unused} predictions without truth"),
         };

@@ -3,13 +3,14 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use occlabel_core::Fault;
-use occlabel_dialects::{KeyframeKey, KeyframeLabels, LabelSet};
+use occlabel_dialects::{KeyframeKey, KeyframeLabels};
 use occlabel_evaluate::scores::{Breakdown, SceneAttributes, ScoreTally, ScoredLabels, ScoredPair};
 use rayon::prelude::*;
 
 use crate::evaluate::mask;
-use crate::evaluate::pairing::Pairing;
+use crate::evaluate::missing::name;
 use crate::evaluate::plan::Plan;
+use crate::label_pairs::LabelPairs;
 
 /// Scores every pair, as many at once as there are threads; each is dropped once it is counted.
 ///
@@ -17,18 +18,16 @@ use crate::evaluate::plan::Plan;
 /// Of several keyframes at fault, the first.
 pub(crate) fn score(
     plan: &Plan,
-    truth: &LabelSet,
-    prediction: &LabelSet,
-    pairing: &Pairing,
+    pairs: &LabelPairs,
     attributes: &SceneAttributes,
 ) -> Result<Breakdown, Fault> {
     let first_fault = AtomicUsize::new(usize::MAX);
-    let counted = pairing.pairs.par_iter().enumerate().fold(Counted::default, |sum, (at, keys)| {
+    let counted = pairs.both.par_iter().enumerate().fold(Counted::default, |sum, (at, keys)| {
         // What comes after a fault is not needed any more; what comes before may have another.
         if at > first_fault.load(Ordering::Relaxed) {
             return sum;
         }
-        match score_pair(plan, truth, prediction, keys) {
+        match score_pair(plan, pairs, keys) {
             Ok(tally) => sum.with(&tally, &keys.0.scene, attributes),
             Err(fault) => {
                 first_fault.fetch_min(at, Ordering::Relaxed);
@@ -68,12 +67,11 @@ impl Counted {
 
 fn score_pair(
     plan: &Plan,
-    truth: &LabelSet,
-    prediction: &LabelSet,
+    pairs: &LabelPairs,
     (true_key, predicted_key): &(KeyframeKey, KeyframeKey),
 ) -> Result<ScoreTally, Fault> {
-    let truth = truth.read(true_key)?;
-    let prediction = prediction.read(predicted_key)?;
+    let truth = pairs.a.read_with(true_key, &plan.wanted)?;
+    let prediction = pairs.b.read_with(predicted_key, &plan.wanted)?;
     let score = || {
         plan.scorer.score(&ScoredPair {
             truth: scored(&truth),
@@ -81,7 +79,7 @@ fn score_pair(
             mask: mask::of(&truth, plan.mask)?,
         })
     };
-    score().map_err(|fault| fault.record(format!("{}/{}", true_key.scene, true_key.token)))
+    score().map_err(|fault| fault.record(name(true_key)))
 }
 
 fn scored(labels: &KeyframeLabels) -> ScoredLabels<'_> {

@@ -10,10 +10,13 @@ mod report;
 mod scene_run;
 mod sweep_reader;
 mod tally;
+mod targets;
 mod workers;
 
 use occlabel_core::Fault;
-use occlabel_labels::{Begun, LabelTree, RESUME_DIFFERS, Resume, RunFiles, RunRecord, begin};
+use occlabel_labels::{
+    Begun, JournalEntry, LabelTree, Manifest, RESUME_DIFFERS, Resume, RunFiles, RunRecord, begin,
+};
 
 use crate::args::{LabelArgs, OnError, ResumeArg};
 use crate::console::Console;
@@ -25,6 +28,7 @@ use crate::label::plan::Plan;
 use crate::label::read_ahead::while_reading;
 use crate::label::report::{EarlierReport, Report};
 use crate::label::scene_run::{Finished, SceneRun};
+use crate::label::targets::Targets;
 use crate::progress::Progress;
 use crate::threads::start_threads;
 
@@ -32,6 +36,7 @@ use crate::threads::start_threads;
 pub(crate) struct Job<'a> {
     args: &'a LabelArgs,
     opened: &'a Opened,
+    targets: &'a Targets,
     console: &'a Console,
     tree: LabelTree,
     threads: usize,
@@ -49,7 +54,8 @@ pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> 
     let threads = start_threads(args.jobs);
     let opened = open(&args.log, &args.config)?;
     let tree = LabelTree::new(&args.output);
-    let job = Job { args, opened: &opened, console, tree, threads };
+    let targets = Targets::new(&opened, &args.also).map_err(Stop::usage)?;
+    let job = Job { args, opened: &opened, targets: &targets, console, tree, threads };
     let mut findings = Findings::default();
     let plan = Plan::make(&job, &mut findings)?;
     if args.dry_run {
@@ -87,12 +93,32 @@ fn label_scenes(
     }
     progress.finish();
     let outcome = findings.outcome();
-    let manifest = records::manifest(job, plan, &record, &entries);
+    let manifest = write_manifests(job, plan, &record, &entries, &begun)?;
     begun.end(&manifest, report.json(outcome, &findings, job.threads))?;
     if plan.scenes.len() != 1 {
         job.console.result(&report.total_line());
     }
     Ok(outcome)
+}
+
+/// The main set's manifest, which lists those of the others, written by now.
+fn write_manifests(
+    job: &Job,
+    plan: &Plan,
+    record: &RunRecord,
+    entries: &[JournalEntry],
+    begun: &Begun,
+) -> Result<Manifest, Fault> {
+    let manifest =
+        |(grid, target)| (target, records::manifest(job, plan, record, entries, (grid, target)));
+    let mut targets = job.targets.all().map(manifest);
+    let (_, mut main) = targets.next().expect("a main set");
+    for (target, manifest) in targets {
+        let folder = target.folder.as_deref().unwrap_or_default();
+        main.files.push(begun.write_below(folder, &manifest)?);
+    }
+    main.files.sort();
+    Ok(main)
 }
 
 /// The run, and what earlier ones finished of it.

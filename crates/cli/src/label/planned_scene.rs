@@ -68,7 +68,7 @@ impl PlannedScene {
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
         let points = job.opened.source.scene_points(&scene);
-        let (spec, evidence) = (&job.opened.rules.spec, job.args.evidence);
+        let (spec, evidence) = (job.targets.largest(), job.args.evidence);
         let model = MemoryModel::new(points, spec, scene.cameras.len(), evidence);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {

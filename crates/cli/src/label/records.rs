@@ -5,15 +5,16 @@ use std::path::Path;
 
 use occlabel_core::Fault;
 use occlabel_labels::{
-    ClassRecord, GridRecord, InputMark, InputRecord, JournalEntry, Manifest, Program, RunRecord,
-    SceneRecord, TaxonomyRecord, inputs_hash,
+    ClassRecord, FileRecord, GridRecord, InputMark, InputRecord, JournalEntry, Manifest, Program,
+    RunRecord, SceneRecord, TaxonomyRecord, inputs_hash, json_hash,
 };
-use occlabel_pipeline::{Config, GridFrame};
+use occlabel_pipeline::Config;
 use serde_json::Value;
 
 use crate::label::Job;
 use crate::label::plan::Plan;
 use crate::label::planned_scene::PlannedScene;
+use crate::label::targets::{LabelledGrid, Target};
 
 /// What makes this run what it is.
 pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
@@ -38,38 +39,46 @@ fn config_json(config: &Config) -> Value {
     serde_json::to_value(config).expect("a configuration is JSON")
 }
 
-/// The manifest of what the run left.
+/// The manifest of what the run left of a label set. That of the main set lists the files of all.
 pub(crate) fn manifest(
     job: &Job,
     plan: &Plan,
     record: &RunRecord,
     entries: &[JournalEntry],
+    (grid, target): (&LabelledGrid, &Target),
 ) -> Manifest {
-    let rules = &job.opened.rules;
-    let frame = match rules.frame {
-        GridFrame::Ego => "ego",
-        GridFrame::Lidar => "lidar",
-    };
-    let mut files: Vec<_> = entries.iter().flat_map(|entry| entry.files.clone()).collect();
-    files.sort_by(|a, b| a.path.cmp(&b.path));
+    let taxonomy = &grid.rules.taxonomy;
+    let config = config_json(&grid.config);
     Manifest {
         program: Program::current(),
         preset: job.opened.preset.clone(),
-        config: record.config.clone(),
-        config_hash: record.config_hash.clone(),
+        config_hash: json_hash(&config),
+        config,
         inputs_hash: inputs_hash(&record.inputs),
         taxonomy: TaxonomyRecord {
             name: job.opened.config.taxonomy.file.clone(),
             hash: job.opened.taxonomy_hash.clone(),
         },
         dialect: None,
-        notes: Vec::new(),
-        grid: GridRecord::new(frame, &rules.spec),
-        classes: class_records(&rules.taxonomy.names),
-        free: rules.taxonomy.free,
+        notes: target.notes(grid),
+        grid: GridRecord::new(grid.frame(), target.spec(grid)),
+        classes: class_records(&taxonomy.names),
+        free: taxonomy.free,
         scenes: scene_records(plan, entries),
-        files,
+        files: files_of(target, entries),
     }
+}
+
+/// The files of a set, by the paths they have in it.
+fn files_of(target: &Target, entries: &[JournalEntry]) -> Vec<FileRecord> {
+    let own = |entry: &JournalEntry, file: &FileRecord| {
+        let record = FileRecord { path: target.own(&file.path)?, keyframe: None, ..file.clone() };
+        Some(record.of_keyframe(&entry.scene, &entry.keyframe))
+    };
+    let files = entries.iter().flat_map(|entry| entry.files.iter().map(move |file| (entry, file)));
+    let mut files: Vec<_> = files.filter_map(|(entry, file)| own(entry, file)).collect();
+    files.sort();
+    files
 }
 
 /// The planned scenes, with those keyframes that were finished.

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene, Timestamp};
-use occlabel_labels::{Journal, JournalEntry, TreePath, WriterLock, evidence_npz, labels_npz};
-use occlabel_pipeline::{LabelOptions, Lenses, aggregate_scene, label_keyframe};
+use occlabel_labels::{Journal, JournalEntry, TreePath, WriterLock};
+use occlabel_pipeline::{LabelOptions, LabelledKeyframe, Lenses, aggregate_scene, label_keyframe};
 use serde_json::Value;
 
 use crate::exit::Stop;
@@ -15,6 +15,7 @@ use crate::label::findings::Findings;
 use crate::label::planned_scene::PlannedScene;
 use crate::label::sweep_reader::SweepReader;
 use crate::label::tally::{EmptyBox, Summary, Tally, VoxelCounts};
+use crate::label::targets::LabelledGrid;
 use crate::label::{Job, workers};
 use crate::progress::Progress;
 
@@ -51,15 +52,12 @@ struct Bench<'a> {
 /// A labelled keyframe that is not on disk yet.
 struct MadeKeyframe {
     /// In the order of writing.
-    files: Vec<(FileOf, Vec<u8>)>,
+    files: Result<Vec<(TreePath, Vec<u8>)>, Fault>,
     /// What the journal and the report say of it.
     summary: Value,
     rays: u64,
     times: StageTimes,
 }
-
-/// Where a file of a keyframe stands, by the scene and the token.
-type FileOf = fn(&str, &str) -> Result<TreePath, Fault>;
 
 impl SceneRun<'_> {
     /// Labels what no earlier run finished.
@@ -122,8 +120,9 @@ impl SceneRun<'_> {
     }
 
     fn has_all_files(&self, entry: &JournalEntry) -> bool {
-        let evidence = TreePath::evidence(&entry.scene, &entry.keyframe);
-        !self.job.args.evidence || evidence.is_ok_and(|path| entry.has(&path))
+        let JournalEntry { scene, keyframe, .. } = entry;
+        let paths = self.job.targets.paths(scene, keyframe, self.job.args.evidence);
+        paths.is_ok_and(|paths| paths.iter().all(|path| entry.has(path)))
     }
 
     fn keyframes_to_label<'s>(&self, scene: &'s Scene, done: &SceneDone) -> Vec<&'s Keyframe> {
@@ -149,37 +148,56 @@ impl SceneRun<'_> {
         Ok(aggregated)
     }
 
-    /// Labels a keyframe.
+    /// Labels a keyframe, in one grid after the other; what is told of it is of the main one.
     fn make(&self, keyframe: &Keyframe, bench: &Bench) -> MadeKeyframe {
-        let (mut clock, (_, shards)) = (StageClock::start(), self.planned.at_once);
-        let rules = &self.job.opened.rules;
-        let enter = |stage| clock.enter(stage);
-        let options = LabelOptions { evidence: self.job.args.evidence, shards };
-        let Bench { scene, aggregated, lenses, .. } = bench;
-        let labelled = label_keyframe(scene, aggregated, lenses, keyframe, rules, &options, enter);
-        MadeKeyframe {
-            files: self.files(&labelled.labels),
-            summary: bench.summary(&labelled.labels),
-            rays: labelled.rays,
-            times: clock.stop(),
+        let mut clock = StageClock::start();
+        let [main, others @ ..] = &self.job.targets.grids[..] else { unreachable!("a main grid") };
+        let LabelledKeyframe { labels, rays } = self.label_in(main, keyframe, bench, &mut clock);
+        let mut files = self.files(main, &labels, keyframe);
+        let summary = bench.summary(&labels);
+        for grid in others {
+            let labelled = self.label_in(grid, keyframe, bench, &mut clock);
+            let more = self.files(grid, &labelled.labels, keyframe);
+            files = files.and_then(|files| Ok([files, more?].concat()));
         }
+        MadeKeyframe { files, summary, rays, times: clock.stop() }
     }
 
-    fn files(&self, labels: &OccupancyLabels) -> Vec<(FileOf, Vec<u8>)> {
-        let evidence = labels.evidence.as_ref().map(evidence_npz);
-        let evidence = evidence.map(|bytes| (TreePath::evidence as FileOf, bytes));
-        evidence.into_iter().chain([(TreePath::labels as FileOf, labels_npz(labels))]).collect()
+    fn label_in(
+        &self,
+        grid: &LabelledGrid,
+        keyframe: &Keyframe,
+        bench: &Bench,
+        clock: &mut StageClock,
+    ) -> LabelledKeyframe {
+        let (_, shards) = self.planned.at_once;
+        let options = LabelOptions { evidence: self.job.args.evidence, shards };
+        let (enter, rules) = (|stage| clock.enter(stage), &grid.rules);
+        let Bench { scene, aggregated, lenses, .. } = bench;
+        label_keyframe(scene, aggregated, lenses, keyframe, rules, &options, enter)
+    }
+
+    fn files(
+        &self,
+        grid: &LabelledGrid,
+        labels: &OccupancyLabels,
+        keyframe: &Keyframe,
+    ) -> Result<Vec<(TreePath, Vec<u8>)>, Fault> {
+        let (scene, token) = (&self.planned.name, &keyframe.token);
+        let files = grid.targets.iter().map(|target| target.files(grid, labels, scene, token));
+        Ok(files.collect::<Result<Vec<_>, Fault>>()?.concat())
     }
 
     /// Writes a keyframe, and notes that it is finished.
     fn finish(&self, keyframe: &Keyframe, made: MadeKeyframe, bench: &Bench) -> Result<(), Fault> {
         let (scene, token) = (&self.planned.name, &keyframe.token);
-        let write =
-            |(path, bytes): (FileOf, Vec<u8>)| self.job.tree.write(&path(scene, token)?, &bytes);
+        let write = |(path, bytes): (TreePath, Vec<u8>)| {
+            Ok(self.job.tree.write(&path, &bytes)?.of_keyframe(scene, token))
+        };
         let entry = JournalEntry {
             scene: scene.clone(),
             keyframe: token.clone(),
-            files: made.files.into_iter().map(write).collect::<Result<_, Fault>>()?,
+            files: made.files?.into_iter().map(write).collect::<Result<_, Fault>>()?,
             summary: made.summary,
         };
         bench.journal.lock().expect("no worker panicked").append(&entry)?;

@@ -40,9 +40,12 @@ impl JudgedTree {
             let expected = format!("the taxonomy of hash {}", manifest.taxonomy.hash);
             return Err(Fault::new("taxonomy", &config.taxonomy.file, expected, hash));
         }
+        let mut rules = Rules::new(&config, Arc::new(taxonomy))?;
+        // A pooled set stands in larger voxels than its configuration labelled.
+        rules.spec = manifest.grid.spec()?;
         Ok(Self {
             name: folder.display().to_string(),
-            rules: Rules::new(&config, Arc::new(taxonomy))?,
+            rules,
             tree: LabelTree::new(folder),
             manifest,
         })

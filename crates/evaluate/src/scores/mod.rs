@@ -55,6 +55,7 @@ pub use attributes::SceneAttributes;
 pub use breakdown::Breakdown;
 pub use completion::CompletionScores;
 pub use confusion::Confusion;
+pub(crate) use confusion::ratio;
 pub use exact_mean::ExactMean;
 pub use f_score::{FScoreTally, FScores};
 pub use panoptic::PanopticTally;

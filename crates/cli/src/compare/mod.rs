@@ -1,0 +1,67 @@
+//! `compare`: how two label sets differ.
+
+mod found;
+mod verdict;
+
+use occlabel_core::Fault;
+use occlabel_dialects::{KeyframeKey, KeyframeLabels};
+use occlabel_evaluate::compare::{ComparedLabels, Comparer, Difference};
+use rayon::prelude::*;
+
+use crate::args::CompareArgs;
+use crate::compare::found::Found;
+use crate::console::Console;
+use crate::exit::{Outcome, Stop};
+use crate::label_pairs::LabelPairs;
+use crate::ray_origins::RayOrigins;
+use crate::threads::start_threads;
+
+pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Outcome, Stop> {
+    start_threads(args.jobs);
+    let pairs = open(args)?;
+    let origins = match args.quick {
+        true => None,
+        false => RayOrigins::find(args.ray_origins.as_deref(), &args.a)?,
+    };
+    if origins.is_none() && !args.quick {
+        console.info("no RayIoU: the manifest of the first set tells no poses; see --ray-origins");
+    }
+    let classes = pairs.a.classes().names();
+    let comparer = Comparer::new(pairs.a.spec().clone(), classes).map_err(Stop::usage)?;
+    let found = compare(&pairs, &comparer, origins.as_ref(), args.worst)?;
+    verdict::tell(args, &pairs, &found, &comparer, console)
+}
+
+fn open(args: &CompareArgs) -> Result<LabelPairs, Stop> {
+    let a = (args.a.as_path(), args.a_dialect.as_deref());
+    let b = (args.b.as_path(), args.b_dialect.as_deref());
+    LabelPairs::open(a, b, &args.scenes).map_err(Stop::usage)
+}
+
+/// Keyframes in parallel, each read, counted and forgotten.
+fn compare(
+    pairs: &LabelPairs,
+    comparer: &Comparer,
+    origins: Option<&RayOrigins>,
+    worst: usize,
+) -> Result<Found, Fault> {
+    let one = |(a, b): &(KeyframeKey, KeyframeKey)| {
+        let origins = origins.map_or(Ok(Vec::new()), |origins| origins.of(a))?;
+        let (labels_a, labels_b) = (pairs.a.read(a)?, pairs.b.read(b)?);
+        let (labels_a, labels_b) = (compared(&labels_a), compared(&labels_b));
+        let difference: Difference = comparer.compare(&labels_a, &labels_b, &origins)?;
+        Ok(Found::of(a, difference, comparer))
+    };
+    let add = |a: Found, b: Found| Ok(a.and(b, worst));
+    pairs.both.par_iter().map(one).try_reduce(Found::default, add)
+}
+
+fn compared(labels: &KeyframeLabels) -> ComparedLabels<'_> {
+    ComparedLabels {
+        semantics: &labels.semantics,
+        mask_lidar: labels.mask_lidar.as_ref(),
+        mask_camera: labels.mask_camera.as_ref(),
+        instances: labels.instances.as_ref(),
+        flow: labels.flow.as_ref(),
+    }
+}

@@ -1,0 +1,4 @@
+//! RayIoU and its kin, against slow statements of the same.
+
+mod casting;
+mod support;

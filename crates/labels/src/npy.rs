@@ -1,0 +1,170 @@
+//! The `.npy` format: a header of text, then the numbers.
+//!
+//! See numpy's own documentation (`numpy.lib.format`). Fortran order and big-endian numbers are read
+//! right; anything but plain numbers, a pickle above all, is refused.
+
+use crate::{NumberArray, NumberType};
+
+/// Longest header of an array that is accepted: version 1 of the format allows no more.
+pub(crate) const MAX_HEADER_BYTES: u64 = 1 << 16;
+
+/// What stands in a header.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NpyHeader {
+    /// The type of each number.
+    pub number: NumberType,
+    /// Whether the bytes of a number come highest first.
+    pub is_big_endian: bool,
+    /// Whether the first axis is the fastest.
+    pub is_fortran: bool,
+    /// How many numbers there are along each axis.
+    pub shape: Vec<usize>,
+    /// Where the numbers begin in the file.
+    pub values_at: usize,
+}
+
+/// Why a file is none of ours: what was expected, what was found.
+pub(crate) type Refusal = (String, String);
+
+impl NpyHeader {
+    /// The header at the beginning of a file.
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Refusal> {
+        let found = header_text(bytes);
+        let told = found.as_ref().map_or("no header", |(text, _)| text.as_str());
+        let refused = || ("an array of plain numbers".to_owned(), told.chars().take(200).collect());
+        let (text, values_at) = found.as_ref().ok_or_else(refused)?;
+        parse_text(text, *values_at).ok_or_else(refused)
+    }
+
+    /// The bytes that the numbers take; `None` if they cannot be counted.
+    pub fn value_bytes(&self) -> Option<u64> {
+        let count = self.shape.iter().try_fold(1_u64, |n, &side| n.checked_mul(side as u64))?;
+        count.checked_mul(self.number.size() as u64)
+    }
+}
+
+impl NumberArray {
+    /// The array in the bytes of an `.npy` file.
+    pub(crate) fn parse_npy(mut bytes: Vec<u8>) -> Result<Self, Refusal> {
+        let header = NpyHeader::parse(&bytes)?;
+        let held = (bytes.len() - header.values_at) as u64;
+        if header.value_bytes() != Some(held) {
+            let expected = header.value_bytes().map_or("fewer".to_owned(), |n| n.to_string());
+            return Err((format!("{expected} bytes of numbers"), format!("{held}")));
+        }
+        bytes.drain(..header.values_at);
+        if header.is_big_endian {
+            bytes.chunks_exact_mut(header.number.size()).for_each(<[u8]>::reverse);
+        }
+        let NpyHeader { number, shape, .. } = header;
+        if header.is_fortran {
+            bytes = c_order(&bytes, number.size(), &shape);
+        }
+        Ok(Self { number, shape, bytes })
+    }
+
+    /// The bytes of an `.npy` file, the same as numpy's.
+    pub fn to_npy(&self) -> Vec<u8> {
+        let mut bytes = self.npy_header();
+        bytes.extend_from_slice(&self.bytes);
+        bytes
+    }
+
+    /// What stands before the numbers in an `.npy` file.
+    pub(crate) fn npy_header(&self) -> Vec<u8> {
+        let sides: Vec<_> = self.shape.iter().map(usize::to_string).collect();
+        let shape = match &sides[..] {
+            [side] => format!("({side},)"),
+            _ => format!("({})", sides.join(", ")),
+        };
+        let descr = self.number.descr();
+        let text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
+        // Room for the first axis to grow to 21 digits, then up to a multiple of 64 bytes.
+        let spare = sides.first().map_or(0, |side| 21_usize.saturating_sub(side.len()));
+        let length = (10 + text.len() + spare + 1).next_multiple_of(64) - 10;
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend_from_slice(&(length as u16).to_le_bytes());
+        bytes.extend_from_slice(format!("{text:<width$}\n", width = length - 1).as_bytes());
+        bytes
+    }
+}
+
+/// The header's dictionary, without blanks and without the comma before a closing bracket, and where
+/// it ends.
+fn header_text(bytes: &[u8]) -> Option<(String, usize)> {
+    let version = *bytes.strip_prefix(b"\x93NUMPY")?.first()?;
+    let (text_at, length) = match version {
+        1 => (10, usize::from(u16::from_le_bytes(*bytes.get(8..)?.first_chunk()?))),
+        2 | 3 => (12, u32::from_le_bytes(*bytes.get(8..)?.first_chunk()?) as usize),
+        _ => return None,
+    };
+    let text = std::str::from_utf8(bytes.get(text_at..)?.get(..length)?).ok()?;
+    let text: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
+    Some((text.replace(",)", ")").replace(",}", "}"), text_at + length))
+}
+
+fn parse_text(text: &str, values_at: usize) -> Option<NpyHeader> {
+    let (descr, rest) = text.strip_prefix("{'descr':'")?.split_once('\'')?;
+    let (order, rest) = rest.strip_prefix(",'fortran_order':")?.split_once(',')?;
+    let sides = rest.strip_prefix("'shape':(")?.strip_suffix(")}")?;
+    let shape: Option<Vec<usize>> = match sides {
+        "" => Some(Vec::new()),
+        sides => sides.split(',').map(|side| side.parse().ok()).collect(),
+    };
+    let is_fortran = match order {
+        "True" => true,
+        "False" => false,
+        _ => return None,
+    };
+    let (endian, kind) = descr.split_at_checked(1)?;
+    let number = NumberType::ALL.into_iter().find(|number| number.descr()[1..] == *kind)?;
+    let is_big_endian = match endian {
+        ">" => true,
+        "<" | "|" | "=" => false,
+        _ => return None,
+    };
+    Some(NpyHeader { number, is_big_endian, is_fortran, shape: shape?, values_at })
+}
+
+/// Numbers whose first axis is the fastest, put into C order.
+fn c_order(bytes: &[u8], size: usize, shape: &[usize]) -> Vec<u8> {
+    let mut ordered = Vec::with_capacity(bytes.len());
+    let mut index = vec![0; shape.len()];
+    for _ in 0..bytes.len() / size {
+        let at = index.iter().zip(shape).rev().fold(0, |at, (i, side)| at * side + i);
+        ordered.extend_from_slice(&bytes[at * size..][..size]);
+        for axis in (0..shape.len()).rev() {
+            index[axis] += 1;
+            if index[axis] < shape[axis] {
+                break;
+            }
+            index[axis] = 0;
+        }
+    }
+    ordered
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_header_is_the_one_that_numpy_writes() {
+        let text = |array: &NumberArray| String::from_utf8(array.to_npy()[10..].to_vec()).unwrap();
+        // numpy.save of zeros((0, 4), int64), of zeros(0, uint8) and of zeros((0, 2, 3), float32)
+        let rows = text(&NumberArray::new::<i64>(&[0, 4], &[]));
+        let expected = "{'descr': '<i8', 'fortran_order': False, 'shape': (0, 4), }";
+        assert_eq!(rows, format!("{expected:<117}\n"));
+        let line = text(&NumberArray::new::<u8>(&[0], &[]));
+        let expected = "{'descr': '|u1', 'fortran_order': False, 'shape': (0,), }";
+        assert_eq!(line, format!("{expected:<117}\n"));
+    }
+
+    #[test]
+    fn an_array_survives_its_file() {
+        let array = NumberArray::new(&[2, 3], &[1.5_f32, -2.0, 0.0, 4.0, 1e9, f32::MIN]);
+        assert_eq!(NumberArray::parse_npy(array.to_npy()), Ok(array));
+        let scalar = NumberArray::new(&[], &[7_i64]);
+        assert_eq!(NumberArray::parse_npy(scalar.to_npy()), Ok(scalar));
+    }
+}

@@ -1,0 +1,142 @@
+//! Arrays read from an `.npz` or `.npy` file, whoever wrote it, within bounds.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use occlabel_core::Fault;
+use zip::ZipArchive;
+use zip::read::ZipFile;
+use zip::result::ZipError;
+
+use crate::files::read_fault;
+use crate::npy::{MAX_HEADER_BYTES, Refusal};
+use crate::{NpyHeader, NumberArray};
+
+/// What deflate can make of a byte at most.
+const MAX_INFLATION: u64 = 1032;
+
+/// An `.npz` file whose arrays are read one by one.
+pub struct NpzFile {
+    path: PathBuf,
+    zip: Zip,
+}
+
+type Zip = ZipArchive<BufReader<File>>;
+
+impl NpzFile {
+    /// Opens a file of at most so many bytes.
+    ///
+    /// # Errors
+    /// If it cannot be read, is longer, or is no zip archive.
+    pub fn open(path: &Path, max_bytes: u64) -> Result<Self, Fault> {
+        let file = open_bounded(path, max_bytes)?;
+        let zip = ZipArchive::new(BufReader::new(file)).map_err(|error| {
+            Fault::new("npz", path.display().to_string(), "a zip archive", error.to_string())
+        })?;
+        Ok(Self { path: path.to_owned(), zip })
+    }
+
+    /// Where it stands.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether there is an array of a name.
+    pub fn holds(&self, name: &str) -> bool {
+        self.zip.index_for_name(&format!("{name}.npy")).is_some()
+    }
+
+    /// The header of an array; `None` if there is no such array.
+    ///
+    /// # Errors
+    /// If it cannot be read, or says of other things than plain numbers.
+    pub fn header(&mut self, name: &str) -> Result<Option<NpyHeader>, Fault> {
+        let Self { path, zip } = self;
+        let header = find(zip, name).and_then(|entry| {
+            let bytes = entry.map(|entry| read(entry.take(MAX_HEADER_BYTES), 0)).transpose()?;
+            bytes.map(|bytes| NpyHeader::parse(&bytes)).transpose()
+        });
+        header.map_err(|refusal| fault(path, Some(name), refusal))
+    }
+
+    /// An array whose numbers take at most so many bytes; `None` if there is no such array.
+    ///
+    /// # Errors
+    /// If it cannot be read, is longer, or holds other things than plain numbers.
+    pub fn array(&mut self, name: &str, max_bytes: u64) -> Result<Option<NumberArray>, Fault> {
+        let Self { path, zip } = self;
+        let array = find(zip, name).and_then(|entry| {
+            let bytes = entry.map(|entry| read_entry(entry, max_bytes)).transpose()?;
+            bytes.map(NumberArray::parse_npy).transpose()
+        });
+        array.map_err(|refusal| fault(path, Some(name), refusal))
+    }
+}
+
+/// An array from an `.npy` file whose numbers take at most so many bytes.
+///
+/// # Errors
+/// If it cannot be read, is longer, or holds other things than plain numbers.
+pub fn read_npy(path: &Path, max_bytes: u64) -> Result<NumberArray, Fault> {
+    let bytes = read_bounded(path, max_bytes.saturating_add(MAX_HEADER_BYTES))?;
+    NumberArray::parse_npy(bytes).map_err(|refusal| fault(path, None, refusal))
+}
+
+/// The bytes of a file of at most so many.
+///
+/// # Errors
+/// If it cannot be read, or is longer.
+pub fn read_bounded(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Fault> {
+    let mut file = open_bounded(path, max_bytes)?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).map_err(|error| read_fault(path, &error))?;
+    Ok(bytes)
+}
+
+fn open_bounded(path: &Path, max_bytes: u64) -> Result<File, Fault> {
+    let unreadable = |error| read_fault(path, &error);
+    let file = File::open(path).map_err(unreadable)?;
+    let bytes = file.metadata().map_err(unreadable)?.len();
+    if bytes > max_bytes {
+        let expected = format!("at most {max_bytes} bytes");
+        let found = format!("{bytes} bytes");
+        return Err(Fault::new("npz-size", path.display().to_string(), expected, found));
+    }
+    Ok(file)
+}
+
+fn find<'a>(zip: &'a mut Zip, name: &str) -> Result<Option<ZipFile<'a, BufReader<File>>>, Refusal> {
+    match zip.by_name(&format!("{name}.npy")) {
+        Ok(entry) => Ok(Some(entry)),
+        Err(ZipError::FileNotFound) => Ok(None),
+        Err(error) => Err(("an array of this name".to_owned(), error.to_string())),
+    }
+}
+
+fn read_entry(entry: ZipFile<'_, BufReader<File>>, max_bytes: u64) -> Result<Vec<u8>, Refusal> {
+    let max = max_bytes.saturating_add(MAX_HEADER_BYTES);
+    if entry.size() > max {
+        let found = format!("{} bytes declared", entry.size());
+        return Err((format!("at most {max} bytes"), found));
+    }
+    let room = entry.size().min(entry.compressed_size().saturating_mul(MAX_INFLATION));
+    // One byte more than there may be, so that the sum over all of them is checked.
+    read(entry.take(max + 1), room as usize)
+}
+
+fn read(mut source: impl Read, room: usize) -> Result<Vec<u8>, Refusal> {
+    let mut bytes = Vec::with_capacity(room);
+    match source.read_to_end(&mut bytes) {
+        Ok(_) => Ok(bytes),
+        Err(error) => Err(("a whole entry".to_owned(), error.to_string())),
+    }
+}
+
+fn fault(path: &Path, name: Option<&str>, (expected, found): Refusal) -> Fault {
+    let fault = Fault::new("npz-array", path.display().to_string(), expected, found);
+    match name {
+        Some(name) => fault.record(name),
+        None => fault,
+    }
+}
