@@ -26,6 +26,10 @@ pub(crate) struct EvaluateArgs {
     /// Which scores to take; `all` leaves out what the files cannot tell.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "miou")]
     pub(crate) metrics: Vec<MetricArg>,
+    /// Origins of rays by keyframe, JSON: {"TOKEN": [[x, y, z], ...]}, metres in the grid frame.
+    /// [default: the lidar's, as the manifest of the truth tells]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) ray_origins: Option<PathBuf>,
     /// A table of scenes for a breakdown: `scene`, then any attributes, between tabs.
     #[arg(long, value_name = "FILE")]
     pub(crate) attributes: Option<PathBuf>,
@@ -82,6 +86,12 @@ pub(crate) enum MetricArg {
     Panoptic,
     /// AVE-T, AVE-O, AVE-D.
     Velocity,
+    /// RayIoU.
+    Rayiou,
+    /// RayIoU and RayPQ.
+    Raypq,
+    /// RayIoU, AVE along rays, and the score of the challenge of 2024.
+    Rayflow,
     /// All that the files can tell.
     All,
 }

@@ -72,11 +72,13 @@ fn score_pair(
 ) -> Result<ScoreTally, Fault> {
     let truth = pairs.a.read_with(true_key, &plan.wanted)?;
     let prediction = pairs.b.read_with(predicted_key, &plan.wanted)?;
+    let origins = plan.origins.as_ref().map(|origins| origins.of(true_key)).transpose()?;
     let score = || {
         plan.scorer.score(&ScoredPair {
             truth: scored(&truth),
             prediction: scored(&prediction),
             mask: mask::of(&truth, plan.mask)?,
+            origins: origins.as_deref().unwrap_or_default(),
         })
     };
     score().map_err(|fault| fault.record(name(true_key)))
