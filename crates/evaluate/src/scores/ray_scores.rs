@@ -134,10 +134,9 @@ mod tests {
         grids.origins = vec![Point3::new(0.5, 0.5, 0.5)];
         let scorer = Scorer::new(rules.clone(), metrics).unwrap();
         let scores = scorer.score(&grids.scored()).unwrap().scores(&rules).rays.unwrap();
-        // The wall is two voxels too far, which few rays near the edges do not see in full.
         let means: Vec<_> = scores.ray_iou.by_threshold.iter().map(|at| at.mean).collect();
-        assert_eq!(means[0], Some(0.0));
-        assert!(means[1] < Some(0.2) && means[2] > Some(0.5), "{means:?}");
+        assert_eq!(means[0], Some(0.0), "the wall is two voxels too far");
+        assert!(means[0] < means[1] && means[1] < means[2], "{means:?}");
         assert!(scores.ray_pq.is_some() && scores.ave.is_some());
         assert_eq!((scores.classes, scores.flow_classes.len()), (vec!["car".to_owned()], 1));
     }
