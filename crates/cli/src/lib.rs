@@ -19,6 +19,7 @@ mod console;
 mod convert;
 mod demo;
 mod describe;
+mod evaluate;
 mod exit;
 mod format_flags;
 mod format_hint;
@@ -98,6 +99,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Label(args) => label::run(args, console),
         Command::Check(args) => check::run(args, console),
         Command::Quality(args) => quality::run(args, console),
+        Command::Evaluate(args) => evaluate::run(args, console),
         Command::Compare(args) => compare::run(args, console),
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),

@@ -40,7 +40,15 @@ struct Frame {
     prediction_flow: Vec<[Option<f32>; 3]>,
 }
 
-const ALL: Metrics = Metrics { semantic: true, f_score: true, panoptic: true, velocity: true };
+const ALL: Metrics = Metrics {
+    semantic: true,
+    f_score: true,
+    panoptic: true,
+    velocity: true,
+    rays: false,
+    ray_panoptic: false,
+    ray_flow: false,
+};
 
 /// How far a number may be from what the statement gives, relative to one or to itself.
 const TOLERANCE: f64 = 1e-9;
@@ -86,6 +94,7 @@ impl Frame {
             truth: labels(&truth, 0),
             prediction: labels(&prediction, 1),
             mask: Some(&bytes(&self.mask)),
+            origins: &[],
         };
         scorer.score(&pair).unwrap()
     }

@@ -3,6 +3,7 @@
 mod compare;
 mod convert;
 mod describe;
+mod evaluate;
 mod label;
 mod log;
 mod quality;
@@ -15,6 +16,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(crate) use compare::CompareArgs;
 pub(crate) use convert::ConvertArgs;
 pub(crate) use describe::DescribeArgs;
+pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use quality::QualityArgs;
@@ -57,6 +59,8 @@ pub(crate) enum Command {
     Check(Box<CheckArgs>),
     /// Measure how right labels are.
     Quality(Box<QualityArgs>),
+    /// Score predictions by the benchmarks' own scores.
+    Evaluate(Box<EvaluateArgs>),
     /// Show how two label sets differ; exit 0 if they do not.
     Compare(CompareArgs),
     /// Turn labels of one dialect into another's.

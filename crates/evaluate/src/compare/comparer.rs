@@ -70,6 +70,7 @@ impl Comparer {
             truth: ScoredLabels::of(a.semantics),
             prediction: ScoredLabels::of(b.semantics),
             mask: None,
+            origins: &[],
         };
         let scores = self.scorer.score(&pair)?;
         let (arrays, differing) = ArrayDifferences::of(a, b);

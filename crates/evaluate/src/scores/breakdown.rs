@@ -8,7 +8,7 @@ use super::rules::ScoringRules;
 use super::tally::{ScoreTally, Scores};
 
 /// A tally of everything, and one for each value of each attribute of scenes.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Breakdown {
     /// Of all keyframes.
     pub all: ScoreTally,

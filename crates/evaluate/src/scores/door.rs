@@ -48,8 +48,9 @@ fn check_labels(
     check_shape(side, labels.semantics.shape(), rules)?;
     check_ids(side, labels.semantics.values(), rules)?;
     let instances = labels.instances.map(VoxelGrid::shape);
-    check_array(side, "instances", instances, metrics.panoptic, rules)?;
-    check_array(side, "flow", labels.flow.map(VoxelGrid::shape), metrics.velocity, rules)
+    let flow = labels.flow.map(VoxelGrid::shape);
+    check_array(side, "instances", instances, metrics.panoptic || metrics.ray_panoptic, rules)?;
+    check_array(side, "flow", flow, metrics.velocity || metrics.ray_flow, rules)
 }
 
 fn check_array(

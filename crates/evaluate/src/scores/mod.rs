@@ -22,6 +22,7 @@
 //!     truth: ScoredLabels::of(&truth),
 //!     prediction: ScoredLabels::of(&prediction),
 //!     mask: None,
+//!     origins: &[],
 //! };
 //! let tally: ScoreTally = [scorer.score(&pair)?].into_iter().sum();
 //! let semantic = tally.scores(scorer.rules()).semantic.unwrap();
@@ -42,6 +43,7 @@ mod f_score;
 mod pair_counts;
 mod panoptic;
 mod panoptic_scores;
+mod ray_scores;
 mod rings;
 mod rules;
 mod scorer;
@@ -60,6 +62,7 @@ pub use exact_mean::ExactMean;
 pub use f_score::{FScoreTally, FScores};
 pub use panoptic::PanopticTally;
 pub use panoptic_scores::{ClassPanoptic, PanopticMeans, PanopticScores};
+pub use ray_scores::{RayScores, RayTallies};
 pub use rules::{ScoringRules, UNLABELLED};
 pub use scorer::{Metrics, ScoredLabels, ScoredPair, Scorer};
 pub use semantic::{BinaryScores, ClassScores, SemanticScores};

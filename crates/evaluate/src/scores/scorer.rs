@@ -1,5 +1,6 @@
 //! One keyframe's prediction against its truth.
 
+use nalgebra::Point3;
 use occlabel_core::{Fault, VoxelGrid};
 
 use super::confusion::Confusion;
@@ -7,10 +8,12 @@ use super::door::{check_pair, check_rules};
 use super::f_score::FScoreTally;
 use super::pair_counts::PairCounts;
 use super::panoptic::PanopticTally;
+use super::ray_scores::RayTallies;
 use super::rings::Rings;
 use super::rules::ScoringRules;
 use super::tally::ScoreTally;
 use super::velocity::VelocityTally;
+use crate::rays::RaySet;
 
 /// The labels of one keyframe, with canonical ids.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +42,8 @@ pub struct ScoredPair<'a> {
     pub prediction: ScoredLabels<'a>,
     /// Voxels are asked where it is not 0; none: everywhere.
     pub mask: Option<&'a VoxelGrid<u8>>,
+    /// Where rays begin, in the grid frame, metres. Masks do not concern them.
+    pub origins: &'a [Point3<f64>],
 }
 
 /// Which scores are taken.
@@ -52,6 +57,12 @@ pub struct Metrics {
     pub panoptic: bool,
     /// AVE-T, AVE-O, AVE-D: both sides need flow, AVE-D instances too.
     pub velocity: bool,
+    /// RayIoU.
+    pub rays: bool,
+    /// RayPQ, with RayIoU: both sides need instances.
+    pub ray_panoptic: bool,
+    /// AVE along rays and the score of the challenge of 2024, with RayIoU: both sides need flow.
+    pub ray_flow: bool,
 }
 
 /// Scores keyframes by fixed rules.
@@ -60,6 +71,7 @@ pub struct Scorer {
     rules: ScoringRules,
     metrics: Metrics,
     rings: Rings,
+    rays: RaySet,
 }
 
 impl Scorer {
@@ -70,7 +82,7 @@ impl Scorer {
     pub fn new(rules: ScoringRules, metrics: Metrics) -> Result<Self, Fault> {
         check_rules(&rules)?;
         let rings = Rings::new(&rules.spec, &rules.ring_m);
-        Ok(Self { rules, metrics, rings })
+        Ok(Self { rules, metrics, rings, rays: RaySet::published() })
     }
 
     /// The rules of scoring.
@@ -92,7 +104,13 @@ impl Scorer {
             f_score: metrics.f_score.then(|| FScoreTally::of(pair, rules)),
             panoptic: metrics.panoptic.then(|| PanopticTally::of(pair, rules)),
             velocity: metrics.velocity.then(|| VelocityTally::of(pair, rules)),
+            rays: self.rays(pair)?,
         })
+    }
+
+    fn rays(&self, pair: &ScoredPair) -> Result<Option<RayTallies>, Fault> {
+        let tallies = || RayTallies::of(pair, &self.rules, self.metrics, &self.rays);
+        self.metrics.rays.then(tallies).transpose()
     }
 
     /// The confusion of each ring.
@@ -139,12 +157,13 @@ pub(crate) mod tests {
         instances: Option<[VoxelGrid<u16>; 2]>,
         flow: Option<[VoxelGrid<[f32; 3]>; 2]>,
         pub(crate) mask: Option<VoxelGrid<u8>>,
+        pub(crate) origins: Vec<Point3<f64>>,
     }
 
     pub(crate) fn pair(rules: &ScoringRules, truth: &[u8], prediction: &[u8]) -> PairGrids {
         let spec = rules.spec.clone();
         let semantics = [truth, prediction].map(|ids| VoxelGrid::from_values(&spec, ids.to_vec()));
-        PairGrids { spec, semantics, instances: None, flow: None, mask: None }
+        PairGrids { spec, semantics, instances: None, flow: None, mask: None, origins: Vec::new() }
     }
 
     impl PairGrids {
@@ -164,7 +183,12 @@ pub(crate) mod tests {
                 instances: self.instances.as_ref().map(|sides| &sides[side]),
                 flow: self.flow.as_ref().map(|sides| &sides[side]),
             };
-            ScoredPair { truth: labels(0), prediction: labels(1), mask: self.mask.as_ref() }
+            ScoredPair {
+                truth: labels(0),
+                prediction: labels(1),
+                mask: self.mask.as_ref(),
+                origins: &self.origins,
+            }
         }
     }
 

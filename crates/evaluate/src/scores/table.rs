@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::ray_scores::RayScores;
 use super::semantic::{ClassScores, SemanticScores};
 use super::tally::{RingScores, Scores};
+use crate::rays::RayPqAt;
 
 impl Scores {
     /// The scores as a table for the terminal. Ratios are from 0 to 1; what could not be asked is a
@@ -14,6 +16,7 @@ impl Scores {
         lines.extend(self.geometry_lines());
         lines.extend(self.panoptic_lines());
         lines.extend(self.velocity_lines());
+        self.rays.iter().for_each(|scores| lines.extend(ray_lines(scores)));
         self.semantic.iter().for_each(|scores| lines.extend(class_lines(scores)));
         lines.extend(self.panoptic_class_lines());
         lines.extend(ring_lines(&self.by_ring));
@@ -25,7 +28,8 @@ impl Scores {
         let mut lines = Vec::new();
         for (name, values) in by_attribute {
             lines.push(String::new());
-            let columns = ["keyframes", "mIoU", "IoU", "F", "PQ"].map(|name| format!("{name:>10}"));
+            let columns =
+                ["keyframes", "mIoU", "IoU", "F", "PQ", "RayIoU"].map(|name| format!("{name:>10}"));
             lines.push(format!("{:24}{}", format!("By {}", clean(name)), columns.concat()));
             lines.extend(values.iter().map(|(value, scores)| scores.attribute_line(value)));
         }
@@ -39,6 +43,7 @@ impl Scores {
             semantic.and_then(|scores| scores.occupied.iou),
             self.f_score.and_then(|scores| scores.f_score),
             self.panoptic.as_ref().and_then(|scores| scores.all.pq),
+            self.rays.as_ref().and_then(|scores| scores.ray_iou.mean),
         ];
         format!("  {:22}{:>10}{}", clean(value), self.keyframes, cells.map(wide).concat())
     }
@@ -104,6 +109,23 @@ fn semantic_lines(scores: &SemanticScores) -> Vec<String> {
         line("recall", scores.occupied.recall),
         line("mIoU, absent classes as 0 (completion)", Some(scores.completion.miou)),
     ]
+}
+
+fn ray_lines(scores: &RayScores) -> Vec<String> {
+    let mut lines = vec!["Along rays".into(), line("RayIoU", scores.ray_iou.mean)];
+    for at in &scores.ray_iou.by_threshold {
+        lines.push(line(&format!("RayIoU at {} m", at.threshold_m), at.mean));
+    }
+    if let Some(ray_pq) = &scores.ray_pq {
+        lines.push(line("RayPQ", ray_pq.mean));
+        let at = |at: &RayPqAt| line(&format!("RayPQ at {} m", at.threshold_m), at.pq);
+        lines.extend(ray_pq.by_threshold.iter().map(at));
+    }
+    if let Some(ave) = &scores.ave {
+        lines.push(line("mAVE, m/s", ave.mean));
+        lines.push(line("challenge score of 2024", scores.challenge_score));
+    }
+    lines
 }
 
 fn class_lines(scores: &SemanticScores) -> Vec<String> {

@@ -9,13 +9,14 @@ use super::confusion::Confusion;
 use super::f_score::{FScoreTally, FScores};
 use super::panoptic::PanopticTally;
 use super::panoptic_scores::PanopticScores;
+use super::ray_scores::{RayScores, RayTallies};
 use super::rules::ScoringRules;
 use super::semantic::SemanticScores;
 use super::velocity::{VelocityScores, VelocityTally};
 
 /// What was counted over some keyframes: tallies add up in any order to the same sum, and are no
 /// larger for it. [`ScoreTally::scores`] takes the ratios.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScoreTally {
     pub(super) keyframes: u64,
     /// The confusion of each ring; one if there are no radii, none if it was not asked for.
@@ -23,6 +24,7 @@ pub struct ScoreTally {
     pub(super) f_score: Option<FScoreTally>,
     pub(super) panoptic: Option<PanopticTally>,
     pub(super) velocity: Option<VelocityTally>,
+    pub(super) rays: Option<RayTallies>,
 }
 
 /// The scores of some keyframes; those that were asked for.
@@ -45,6 +47,9 @@ pub struct Scores {
     /// AVE-T, AVE-O, AVE-D.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity: Option<VelocityScores>,
+    /// RayIoU and its kin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rays: Option<RayScores>,
 }
 
 /// The scores of one range ring.
@@ -80,6 +85,7 @@ impl ScoreTally {
             f_score: self.f_score.map(|tally| tally.scores(rules)),
             panoptic: self.panoptic.as_ref().map(|tally| tally.scores(rules)),
             velocity: self.velocity.as_ref().map(|tally| tally.scores(rules)),
+            rays: self.rays.as_ref().map(|tallies| tallies.scores(rules)),
         }
     }
 
@@ -112,6 +118,9 @@ impl AddAssign<&ScoreTally> for ScoreTally {
         add(&mut self.f_score, &other.f_score);
         add(&mut self.panoptic, &other.panoptic);
         add(&mut self.velocity, &other.velocity);
+        if let (Some(sum), Some(other)) = (&mut self.rays, &other.rays) {
+            sum.add(other);
+        }
     }
 }
 
