@@ -71,8 +71,8 @@ pub trait Number: Copy {
     /// Its type.
     const TYPE: NumberType;
 
-    /// Adds its bytes.
-    fn put(self, bytes: &mut Vec<u8>);
+    /// The bytes of numbers, little-endian.
+    fn bytes(values: &[Self]) -> Vec<u8>;
 }
 
 macro_rules! numbers {
@@ -80,8 +80,9 @@ macro_rules! numbers {
         $(impl Number for $number {
             const TYPE: NumberType = NumberType::$of;
 
-            fn put(self, bytes: &mut Vec<u8>) {
-                bytes.extend_from_slice(&self.to_le_bytes());
+            fn bytes(values: &[Self]) -> Vec<u8> {
+                let numbers: Vec<_> = values.iter().map(|value| value.to_le_bytes()).collect();
+                numbers.into_flattened()
             }
         })*
     };
@@ -96,9 +97,7 @@ impl NumberArray {
     /// If there is not one number for each place of the shape.
     pub fn new<T: Number>(shape: &[usize], values: &[T]) -> Self {
         assert_eq!(values.len(), shape.iter().product::<usize>(), "a number for each place");
-        let mut bytes = Vec::with_capacity(size_of_val(values));
-        values.iter().for_each(|value| value.put(&mut bytes));
-        Self { number: T::TYPE, shape: shape.to_vec(), bytes }
+        Self { number: T::TYPE, shape: shape.to_vec(), bytes: T::bytes(values) }
     }
 
     /// An array of whole numbers of a type; digits that the type has no room for are cut off.
@@ -111,9 +110,13 @@ impl NumberArray {
             return Self::of_floats(number, shape, &values);
         }
         assert_eq!(values.len(), shape.iter().product::<usize>(), "a number for each place");
-        let digits =
-            values.iter().flat_map(|value| value.to_le_bytes().into_iter().take(number.size()));
-        Self { number, shape: shape.to_vec(), bytes: digits.collect() }
+        let bytes = match number.size() {
+            1 => values.iter().map(|&value| value as u8).collect(),
+            2 => u16::bytes(&values.iter().map(|&value| value as u16).collect::<Vec<_>>()),
+            4 => u32::bytes(&values.iter().map(|&value| value as u32).collect::<Vec<_>>()),
+            _ => i64::bytes(values),
+        };
+        Self { number, shape: shape.to_vec(), bytes }
     }
 
     /// An array of numbers of a type; what stands after the point is cut off if the type has none.
