@@ -64,6 +64,7 @@ mod tests {
             id,
             name: (*name).into(),
             is_ignored: *name == "noise",
+            ..Class::default()
         };
         ClassTable { free: 99, no_label: None, list: (0..).zip(names).map(class).collect() }
     }
