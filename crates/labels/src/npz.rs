@@ -3,11 +3,13 @@
 //! `[x][y][z]`, C order, deflated at level 6, every entry dated 1980-01-01: the same labels give
 //! the same bytes.
 
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 
+use ndarray::{ArrayViewD, IxDyn};
+use ndarray_npy::{NpzWriter, WriteNpyExt};
 use occlabel_core::{Evidence, OccupancyLabels, VoxelGrid};
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::{CompressionMethod, DateTime};
 
 use crate::{Number, NumberArray};
 
@@ -43,37 +45,40 @@ pub fn evidence_npz(evidence: &Evidence) -> Vec<u8> {
 pub fn npz<'a>(arrays: impl IntoIterator<Item = (&'a str, &'a NumberArray)>) -> Vec<u8> {
     let mut npz = Archive::new();
     for (name, array) in arrays {
-        npz.add_array(name, array);
+        npz.add_array(name, array, array.bytes.len());
     }
     npz.finish()
 }
 
 /// An npz in memory, where writing does not fail.
-struct Archive(ZipWriter<Cursor<Vec<u8>>>);
+struct Archive(NpzWriter<Cursor<Vec<u8>>>);
 
 impl Archive {
     fn new() -> Self {
-        Self(ZipWriter::new(Cursor::new(Vec::new())))
+        Self(NpzWriter::new(Cursor::new(Vec::new())))
     }
 
     fn add<T: Number>(&mut self, name: &str, grid: &VoxelGrid<T>) {
-        self.add_array(name, &NumberArray::new(&grid.shape(), grid.values()));
+        self.add_values(name, &grid.shape(), grid.values());
     }
 
     fn add_vectors(&mut self, name: &str, grid: &VoxelGrid<[f32; 3]>) {
         let [x, y, z] = grid.shape();
-        self.add_array(name, &NumberArray::new(&[x, y, z, 3], grid.values().as_flattened()));
+        self.add_values(name, &[x, y, z, 3], grid.values().as_flattened());
     }
 
-    fn add_array(&mut self, name: &str, array: &NumberArray) {
+    fn add_values<T: Number>(&mut self, name: &str, shape: &[usize], values: &[T]) {
+        let array = ArrayViewD::from_shape(IxDyn(shape), values).expect("one value per voxel");
+        self.add_array(name, &array, size_of_val(values));
+    }
+
+    fn add_array(&mut self, name: &str, array: &impl WriteNpyExt, bytes: usize) {
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
             .compression_level(Some(DEFLATE_LEVEL))
             .last_modified_time(DateTime::default())
-            .large_file(array.bytes.len() > LARGE_BYTES);
-        self.0.start_file(format!("{name}.npy"), options).expect("room in memory");
-        self.0.write_all(&array.npy_header()).expect("room in memory");
-        self.0.write_all(&array.bytes).expect("room in memory");
+            .large_file(bytes > LARGE_BYTES);
+        self.0.add_array_with_options(name, array, options).expect("room in memory");
     }
 
     fn finish(self) -> Vec<u8> {

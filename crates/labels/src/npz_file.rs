@@ -124,9 +124,9 @@ fn read_entry(entry: ZipFile<'_, BufReader<File>>, max_bytes: u64) -> Result<Num
         let found = format!("{} bytes declared", entry.size());
         return Err((format!("at most {max} bytes"), found));
     }
-    let room = entry.size().min(entry.compressed_size().saturating_mul(MAX_INFLATION));
+    let max_bytes = entry.size().min(entry.compressed_size().saturating_mul(MAX_INFLATION));
     // One byte more than there may be, so that the sum over all of them is checked.
-    NumberArray::read(entry.take(max + 1), room)
+    NumberArray::read(entry.take(max + 1), max_bytes)
 }
 
 fn fault(path: &Path, name: Option<&str>, (expected, found): Refusal) -> Fault {

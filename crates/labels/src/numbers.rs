@@ -1,5 +1,6 @@
 //! Arrays of numbers of any type and shape, as files of other programs bring them.
 
+use ndarray_npy::{ReadableElement, WritableElement};
 use serde::{Deserialize, Serialize};
 
 /// A type of numbers that numpy writes.
@@ -66,13 +67,16 @@ pub struct NumberArray {
     pub bytes: Vec<u8>,
 }
 
-/// A number as the bytes of a [`NumberArray`].
-pub trait Number: Copy {
+/// A number as the bytes of a [`NumberArray`], and in files as `ndarray-npy` has it.
+pub trait Number: ReadableElement + WritableElement + Copy {
     /// Its type.
     const TYPE: NumberType;
 
     /// The bytes of numbers, little-endian.
     fn bytes(values: &[Self]) -> Vec<u8>;
+
+    /// The numbers of bytes, little-endian.
+    fn numbers(bytes: &[u8]) -> Vec<Self>;
 }
 
 macro_rules! numbers {
@@ -84,11 +88,48 @@ macro_rules! numbers {
                 let numbers: Vec<_> = values.iter().map(|value| value.to_le_bytes()).collect();
                 numbers.into_flattened()
             }
+
+            fn numbers(bytes: &[u8]) -> Vec<Self> {
+                each(bytes, Self::from_le_bytes)
+            }
         })*
     };
 }
 
 numbers!(u8: U8 u16: U16 u32: U32 u64: U64 i8: I8 i16: I16 i32: I32 i64: I64 f32: F32 f64: F64);
+
+impl Number for bool {
+    const TYPE: NumberType = NumberType::Bool;
+
+    fn bytes(values: &[Self]) -> Vec<u8> {
+        values.iter().map(|&value| u8::from(value)).collect()
+    }
+
+    fn numbers(bytes: &[u8]) -> Vec<Self> {
+        bytes.iter().map(|&byte| byte != 0).collect()
+    }
+}
+
+/// Calls a function with the Rust type of a [`NumberType`]: halves, which there are none of in Rust,
+/// as the words of their bits.
+macro_rules! with_type {
+    ($number:expr, $function:ident($($argument:expr),*)) => {
+        match $number {
+            NumberType::Bool => $function::<bool>($($argument),*),
+            NumberType::U8 => $function::<u8>($($argument),*),
+            NumberType::U16 | NumberType::F16 => $function::<u16>($($argument),*),
+            NumberType::U32 => $function::<u32>($($argument),*),
+            NumberType::U64 => $function::<u64>($($argument),*),
+            NumberType::I8 => $function::<i8>($($argument),*),
+            NumberType::I16 => $function::<i16>($($argument),*),
+            NumberType::I32 => $function::<i32>($($argument),*),
+            NumberType::I64 => $function::<i64>($($argument),*),
+            NumberType::F32 => $function::<f32>($($argument),*),
+            NumberType::F64 => $function::<f64>($($argument),*),
+        }
+    };
+}
+pub(crate) use with_type;
 
 impl NumberArray {
     /// An array of numbers in C order.
