@@ -3,6 +3,7 @@
 //! ```text
 //! cargo run --release -p occlabel-suite -- stages  [--world W] [--rounds N]   each stage
 //! cargo run --release -p occlabel-suite -- lidar   [--world W] [--rounds N]   rays on each instruction set
+//! cargo run --release -p occlabel-suite -- rays    [--world W] [--rounds N]   rays of RayIoU, and the textbook's
 //! cargo run --release -p occlabel-suite -- scaling [--rounds N]   with rays, voxel size, keyframes, length
 //! cargo run --release -p occlabel-suite -- scene   [--world W] [--rounds N]   `label`, one thread and two
 //! cargo run --release -p occlabel-suite -- log     [--world W]    where the log of a world is
@@ -25,6 +26,7 @@ mod keyframe_stages;
 mod label_run;
 mod lidar;
 mod peer;
+mod rays;
 mod row;
 mod scaling;
 mod scene;
@@ -37,12 +39,13 @@ use crate::args::Args;
 
 fn main() -> ExitCode {
     let Some(args) = Args::parse(std::env::args().skip(1)) else {
-        eprintln!("usage: occlabel-suite stages|lidar|scaling|scene|log|export DIR|peer DIR");
+        eprintln!("usage: occlabel-suite stages|lidar|rays|scaling|scene|log|export DIR|peer DIR");
         return ExitCode::from(2);
     };
     match args.bench.as_str() {
         "stages" => stages::run(&args),
         "lidar" => lidar::run(&args),
+        "rays" => rays::run(&args),
         "scaling" => scaling::run(&args),
         "scene" => scene::run(&args),
         "label" => label_run::once(&args),

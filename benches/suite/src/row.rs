@@ -78,6 +78,16 @@ pub(crate) fn tell(bench: &str, name: &str, unit: &str, value: f64) {
     println!("{line}");
 }
 
+/// Prints how many times the CPU time of `other` a row takes, round by round.
+pub(crate) fn tell_ratio(bench: &str, name: &str, row: &Row, other: &Row) {
+    let ratios = row.cpu_ns.iter().zip(&other.cpu_ns).map(|(row, other)| row / other);
+    let mut ratios: Vec<f64> = ratios.collect();
+    ratios.sort_by(f64::total_cmp);
+    let [least, .., most] = ratios[..] else { return tell(bench, name, "times", ratios[0]) };
+    tell(bench, name, "times", ratios[ratios.len() / 2]);
+    eprintln!("{:<36} {least:>11.3} to {most:.3}, {} rounds", "", ratios.len());
+}
+
 impl Row {
     fn new(bench: &'static str, name: &str, unit: &'static str, count: u64) -> Self {
         Self { bench, name: name.into(), unit, count, cpu_ns: vec![], wall_ns: vec![] }

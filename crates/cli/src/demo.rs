@@ -66,7 +66,7 @@ fn draw(labels: &Path, pictures: &Path, console: &Console) -> Result<(), Stop> {
         semantics: &arrays.semantics,
         mask_lidar: &arrays.mask_lidar,
         mask_camera: &arrays.mask_camera,
-        free: manifest.free,
+        free: u8::try_from(manifest.free).unwrap_or(u8::MAX),
         palette: &Palette::of(&names),
     };
     write_pictures(&painted, pictures)?;

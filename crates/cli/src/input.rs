@@ -5,13 +5,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
+use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_logs::{
     Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions, PointColumns,
     QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource,
     WaymoLog,
 };
 use occlabel_pipeline::{
-    Autos, Config, GridTable, ReaderTables, Rules, parse_taxonomy, preset, shipped_taxonomy,
+    Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
+    shipped_taxonomy,
 };
 
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
@@ -36,16 +38,21 @@ pub(crate) struct Opened {
 
 /// Opens the log and resolves the configuration against it.
 pub(crate) fn open(log: &LogArgs, args: &ConfigArgs) -> Result<Opened, Stop> {
-    open_with(log, args, None)
+    open_with(log, args, &Stead::default())
 }
 
-/// The same with a class that stands in for what the taxonomy does not name, if none is given.
-pub(crate) fn open_with(
-    log: &LogArgs,
-    args: &ConfigArgs,
-    stand_in: Option<ClassId>,
-) -> Result<Opened, Stop> {
-    let (preset, mut config) = read_config(args).map_err(Stop::usage)?;
+/// What stands in where the command line says nothing.
+#[derive(Default)]
+pub(crate) struct Stead {
+    /// The class of what the taxonomy does not name.
+    pub(crate) class: Option<ClassId>,
+    /// The grid, in place of the preset's.
+    pub(crate) grid: Option<GridTable>,
+}
+
+/// The same with what stands in where the command line says nothing.
+pub(crate) fn open_with(log: &LogArgs, args: &ConfigArgs, stead: &Stead) -> Result<Opened, Stop> {
+    let (preset, mut config) = read_config(args, stead.grid.as_ref()).map_err(Stop::usage)?;
     check_flags(log, args).map_err(Stop::usage)?;
     check_input(&log.input).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
@@ -57,7 +64,7 @@ pub(crate) fn open_with(
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
     let options = ReadOptions {
         scenes,
-        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stand_in),
+        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class),
         taxonomy,
         keyframes: config.keyframes.clone(),
     };
@@ -155,9 +162,13 @@ fn usage_or_failed(fault: Fault) -> Stop {
     }
 }
 
-fn read_config(args: &ConfigArgs) -> Result<(Option<String>, Config), Fault> {
+fn read_config(
+    args: &ConfigArgs,
+    grid: Option<&GridTable>,
+) -> Result<(Option<String>, Config), Fault> {
     let name = args.preset.as_deref().unwrap_or("precise");
     let base = preset(name).ok_or_else(|| unknown_preset(name))?;
+    let base = &grid.map_or(Ok(base.to_owned()), |grid| with_grid(base, grid))?;
     match &args.config {
         None => Ok((Some(name.into()), Config::from_layers(name, base, None, &args.settings)?)),
         Some(path) => {
@@ -165,6 +176,33 @@ fn read_config(args: &ConfigArgs) -> Result<(Option<String>, Config), Fault> {
             Ok((None, Config::from_layers(&place, base, Some(&file), &args.settings)?))
         }
     }
+}
+
+/// A preset with another grid.
+fn with_grid(preset: &str, grid: &GridTable) -> Result<String, Fault> {
+    let not_toml = |error: String| Fault::new("config", "the preset", "TOML", error);
+    let mut table: toml::Table =
+        preset.parse().map_err(|error: toml::de::Error| not_toml(error.to_string()))?;
+    let grid = toml::Value::try_from(grid).map_err(|error| not_toml(error.to_string()))?;
+    table.insert("grid".to_owned(), grid);
+    Ok(table.to_string())
+}
+
+/// The grid that a dialect was published with.
+pub(crate) fn published_grid(dialect: &Dialect) -> Result<GridTable, Fault> {
+    let DialectGrid { frame, min_m, max_m, voxel_size_m } = dialect.grid.clone();
+    let frame = match frame.as_str() {
+        "ego" => GridFrame::Ego,
+        "lidar" => GridFrame::Lidar,
+        other => {
+            let expected = "ego or lidar, to label in";
+            return Err(Fault::new("dialect", &dialect.name, expected, other).record("grid.frame"));
+        }
+    };
+    let is_cube = voxel_size_m.iter().all(|side| *side == voxel_size_m[0]);
+    let voxel_size_m =
+        if is_cube { VoxelSize::Cube(voxel_size_m[0]) } else { VoxelSize::Sides(voxel_size_m) };
+    Ok(GridTable { frame, min_m, max_m, voxel_size_m })
 }
 
 /// The `[grid]` of a configuration file.

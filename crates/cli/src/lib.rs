@@ -16,7 +16,9 @@ mod check;
 mod compare;
 mod completions;
 mod console;
+mod convert;
 mod demo;
+mod describe;
 mod evaluate;
 mod exit;
 mod format_flags;
@@ -99,6 +101,8 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Quality(args) => quality::run(args, console),
         Command::Evaluate(args) => evaluate::run(args, console),
         Command::Compare(args) => compare::run(args, console),
+        Command::Convert(args) => convert::run(args, console),
+        Command::Describe(args) => describe::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),

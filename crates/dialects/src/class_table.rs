@@ -3,7 +3,7 @@
 use occlabel_core::Fault;
 use serde::{Deserialize, Serialize};
 
-use crate::IGNORED;
+use crate::{Concepts, IGNORED};
 
 /// The classes of a label set. A class's index is its place in `list`; free is the one after the last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub struct ClassTable {
 }
 
 /// A class of a label set.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Class {
     /// Its id in files.
@@ -29,6 +29,17 @@ pub struct Class {
     /// Whether scores leave it out, as noise.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_ignored: bool,
+    /// What it means, where that is not what its name says: a concept of
+    /// `configs/dialects/concepts.toml`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub concept: Option<String>,
+}
+
+impl Class {
+    /// The concept that it means, of the shipped tree: what it says itself, or else its name's.
+    pub fn concept(&self) -> Option<&'static str> {
+        Concepts::shipped().named(self.concept.as_ref().unwrap_or(&self.name))
+    }
 }
 
 /// Most classes that a table may hold: 254 is [`UNKNOWN`], 255 [`IGNORED`].

@@ -6,13 +6,18 @@ use occlabel_core::{Fault, GridSpec, VoxelGrid};
 use occlabel_labels::{NpzFile, NumberArray, NumberType, read_bounded};
 
 use crate::values::{self, Refusal};
-use crate::{Array, ClassTable, Dialect, Element, Holds, KeyframeLabels, Layout, Order, Wanted};
+use crate::{
+    Array, ClassTable, Dialect, DialectGrid, Element, Holds, KeyframeLabels, Layout, Order, Wanted,
+};
 
 /// Largest npz file per voxel: numbers of 8 bytes, flow and extras, undeflated.
 const MAX_FILE_BYTES_PER_VOXEL: u64 = 128;
 
 /// What an npz file may hold beside arrays of voxels.
 const MAX_OTHER_BYTES: u64 = 1 << 26;
+
+/// Most voxels of a grid whose shape only a file tells: 1.6 times those of Occ3D-Waymo's fine one.
+const MAX_TOLD_VOXELS: usize = 1 << 28;
 
 /// Where the file of an array stands, by the array's name.
 pub(crate) type Places<'a> = &'a dyn Fn(&str) -> PathBuf;
@@ -35,8 +40,25 @@ impl Dialect {
         }
     }
 
+    /// The published limits, in as many voxels as a keyframe's file tells.
+    pub(crate) fn told_spec(&self, places: Places<'_>) -> Result<GridSpec, Fault> {
+        let published = self.grid.spec()?;
+        let shape = self.shape_in(places)?.unwrap_or(published.shape());
+        if shape == published.shape() {
+            return Ok(published);
+        }
+        let DialectGrid { min_m, max_m, .. } = self.grid;
+        let size_m = |axis: usize| (max_m[axis] - min_m[axis]) / shape[axis] as f64;
+        let spec = GridSpec::new(min_m, max_m, [0, 1, 2].map(size_m))?;
+        if spec.len() <= MAX_TOLD_VOXELS {
+            return Ok(spec);
+        }
+        let (expected, found) = (format!("at most {MAX_TOLD_VOXELS} voxels"), format!("{shape:?}"));
+        Err(Fault::new("grid", places("").display().to_string(), expected, found))
+    }
+
     /// The shape of a keyframe's grid, where the file tells it.
-    pub(crate) fn shape_in(&self, places: Places<'_>) -> Result<Option<[usize; 3]>, Fault> {
+    fn shape_in(&self, places: Places<'_>) -> Result<Option<[usize; 3]>, Fault> {
         let (Layout::Npz(_), name) = (&self.layout, self.layout.semantics_name()) else {
             return Ok(None);
         };

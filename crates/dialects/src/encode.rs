@@ -61,6 +61,9 @@ impl Dialect {
     ///
     /// # Errors
     /// If the scene or the token is no plain name, or an extra has another shape than the dialect's.
+    ///
+    /// # Panics
+    /// If `semantics` holds an index of no class of this dialect.
     pub fn encode(
         &self,
         labels: &KeyframeLabels,
@@ -80,6 +83,15 @@ impl Dialect {
             }
         }
         Ok(files.encoded)
+    }
+
+    /// The file that says the classes of a keyframe.
+    ///
+    /// # Errors
+    /// If the scene or the token is no plain name.
+    pub fn semantics_path(&self, scene: &str, token: &str) -> Result<TreePath, Fault> {
+        let layout = &self.layout;
+        PathPattern::new(layout.path(), layout.semantics_name()).tree_path(scene, token)
     }
 
     /// What the labels know and the dialect cannot say.

@@ -13,9 +13,6 @@ use crate::{
     Class, ClassTable, Dialect, DialectGrid, KeyframeLabels, PathPattern, Wanted, guess, values,
 };
 
-/// Most voxels of a grid whose shape only a file tells: 1.6 times those of Occ3D-Waymo's fine one.
-const MAX_TOLD_VOXELS: usize = 1 << 28;
-
 /// A folder of labelled keyframes.
 #[derive(Clone, Debug)]
 pub struct LabelSet {
@@ -126,28 +123,10 @@ impl LabelSet {
 
     /// Takes the grid that the first keyframe's file tells.
     pub(crate) fn adopt_told_spec(&mut self) -> Result<(), Fault> {
-        self.spec = self.told_spec()?;
+        let key = &self.keyframes[0];
+        self.spec = self.dialect.told_spec(&|name| self.place(key, name))?;
         self.dialect.grid.voxel_size_m = self.spec.size_m().into();
         Ok(())
-    }
-
-    /// The published limits, in as many voxels as the first keyframe's file tells.
-    fn told_spec(&self) -> Result<GridSpec, Fault> {
-        let key = &self.keyframes[0];
-        let places = |name: &str| self.place(key, name);
-        let published = self.dialect.grid.spec()?;
-        let shape = self.dialect.shape_in(&places)?.unwrap_or(published.shape());
-        if shape == published.shape() {
-            return Ok(published);
-        }
-        let DialectGrid { min_m, max_m, .. } = self.dialect.grid;
-        let size_m = |axis: usize| (max_m[axis] - min_m[axis]) / shape[axis] as f64;
-        let spec = GridSpec::new(min_m, max_m, [0, 1, 2].map(size_m))?;
-        if spec.len() <= MAX_TOLD_VOXELS {
-            return Ok(spec);
-        }
-        let (expected, found) = (format!("at most {MAX_TOLD_VOXELS} voxels"), format!("{shape:?}"));
-        Err(Fault::new("grid", places("").display().to_string(), expected, found))
     }
 
     /// The dialect: its published name, this set's classes and grid.
@@ -294,12 +273,13 @@ fn dialect_of(manifest: &Manifest) -> Result<Dialect, Fault> {
 
 fn classes_of(manifest: &Manifest) -> ClassTable {
     let class = |record: &occlabel_labels::ClassRecord| Class {
-        id: u16::from(record.id),
+        id: record.id,
         name: record.name.clone(),
         is_ignored: false,
+        concept: None,
     };
     ClassTable {
-        free: u16::from(manifest.free),
+        free: manifest.free,
         no_label: None,
         list: manifest.classes.iter().map(class).collect(),
     }

@@ -12,7 +12,10 @@ pub(crate) type Refusal = (&'static str, String);
 pub(crate) fn classes(table: &ClassTable, array: &NumberArray) -> Result<Vec<u8>, Refusal> {
     let indices = table.indices();
     let known: Vec<u8> = match array.number {
-        NumberType::U8 => array.bytes.iter().map(|&id| indices[usize::from(id)]).collect(),
+        NumberType::U8 => {
+            let indices = *indices.first_chunk::<256>().expect("an index of each id");
+            array.bytes.iter().map(|&id| indices[usize::from(id)]).collect()
+        }
         NumberType::U16 => {
             let ids = array.bytes.as_chunks().0.iter().map(|&id| u16::from_le_bytes(id));
             ids.map(|id| indices[usize::from(id)]).collect()
@@ -38,7 +41,12 @@ fn unknown(known: &[u8], ids: &[i64]) -> Refusal {
 }
 
 /// The id of each index, free's where files have none for [`IGNORED`].
+///
+/// # Panics
+/// If an index is that of no class, nor of free, nor [`IGNORED`].
 pub(crate) fn ids(table: &ClassTable, indices: &[u8]) -> Vec<i64> {
+    let is_known = |&index: &u8| index <= table.free_index() || index == IGNORED;
+    assert!(indices.iter().all(is_known), "indices of the dialect's classes");
     let mut ids = [i64::from(table.free); 256];
     for index in (0..=table.free_index()).chain([IGNORED]) {
         ids[usize::from(index)] = i64::from(table.id_of(index).unwrap_or(table.free));

@@ -38,7 +38,7 @@ pub struct Manifest {
     /// The classes in order of their ids.
     pub classes: Vec<ClassRecord>,
     /// The id in `semantics` where a voxel is not occupied.
-    pub free: u8,
+    pub free: u16,
     /// The scenes by name.
     pub scenes: BTreeMap<String, SceneRecord>,
     /// Every file of the tree but this one and the report, in order of their paths.
@@ -84,7 +84,7 @@ pub struct GridRecord {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassRecord {
     /// Its value in `semantics`.
-    pub id: u8,
+    pub id: u16,
     /// Its name.
     pub name: String,
 }
@@ -275,7 +275,7 @@ pub(crate) mod tests {
     }
 
     prop_compose! {
-        fn any_manifest()(size in prop::array::uniform3(1e-3..10.0_f64), free in any::<u8>(),
+        fn any_manifest()(size in prop::array::uniform3(1e-3..10.0_f64), free in any::<u16>(),
                           scenes in prop::collection::btree_map(".*", scene(), 0..3),
                           files in prop::collection::vec(file(), 0..5),
                           number in -1e9..1e9_f64) -> Manifest {

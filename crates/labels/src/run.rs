@@ -108,14 +108,20 @@ pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Beg
 }
 
 impl Begun {
-    /// Writes the manifest of a label set that stands in a folder of the tree, and gives what the
-    /// tree's own manifest says of it.
+    /// Writes a JSON file that tells of all keyframes, `<stem>.json`, at the top of the tree or in a
+    /// folder of it, and gives what the manifest says of it. Shards have theirs each.
     ///
     /// # Errors
     /// If it cannot be written, or the folder is no plain name.
-    pub fn write_below(&self, folder: &str, manifest: &Manifest) -> Result<FileRecord, Fault> {
-        let path = TreePath::new(format!("{folder}/{}", self.files.manifest_name()))?;
-        self.files.tree().write(&path, &manifest.to_json())
+    pub fn write_of_all(
+        &self,
+        folder: Option<&str>,
+        stem: &str,
+        json: &impl Serialize,
+    ) -> Result<FileRecord, Fault> {
+        let name = self.files.name(stem, "json");
+        let path = folder.map_or(name.clone(), |folder| format!("{folder}/{name}"));
+        self.files.tree().write(&TreePath::new(path)?, &json::pretty(json))
     }
 
     /// Ends the run: the report, then the manifest; the records of the unfinished run leave.

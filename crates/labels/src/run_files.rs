@@ -33,12 +33,7 @@ impl RunFiles {
 
     /// `manifest.json`: the run is finished.
     pub fn manifest(&self) -> PathBuf {
-        self.tree.root().join(self.manifest_name())
-    }
-
-    /// `manifest.json`, the name alone.
-    pub(crate) fn manifest_name(&self) -> String {
-        self.name("manifest", "json")
+        self.named("manifest", "json")
     }
 
     /// `report.json`: how the run went.
@@ -72,7 +67,7 @@ impl RunFiles {
         self.tree.root().join(self.name(stem, ending))
     }
 
-    fn name(&self, stem: &str, ending: &str) -> String {
+    pub(crate) fn name(&self, stem: &str, ending: &str) -> String {
         match self.shard {
             None => format!("{stem}.{ending}"),
             Some((index, count)) => format!("{stem}.{index}-of-{count}.{ending}"),

@@ -50,4 +50,5 @@ pub use eye::Eye;
 pub use lenses::Lenses;
 pub use matter::{Matter, matter};
 pub use settings::{CameraRays, Occluders, OcclusionSettings};
+pub use view::in_view;
 pub use visible::visible;

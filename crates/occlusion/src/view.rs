@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, Vector3};
 use occlabel_core::camera::{CameraModel, Intrinsics};
-use occlabel_core::{Camera, GridSpec, VoxelIndex};
+use occlabel_core::{Camera, GridSpec, VoxelGrid, VoxelIndex};
 
 use crate::Eye;
 
@@ -55,6 +55,15 @@ impl<'a> View<'a> {
             |normal: &Vector3<f64>| normal.dot(&way) + normal.abs().dot(&half) < -margin;
         nearest <= self.depth_max_m + margin && !self.bounds.iter().any(is_behind)
     }
+}
+
+/// 1 where the centre of a voxel is in view of some camera, whatever stands before it.
+///
+/// It is Occ3D-Waymo's `infov`: cameras need not look everywhere.
+pub fn in_view(eyes: &[Eye], spec: &GridSpec, depth_max_m: f64) -> VoxelGrid<u8> {
+    let views: Vec<View> = eyes.iter().map(|eye| View::new(eye, depth_max_m)).collect();
+    let is_seen = |voxel| views.iter().any(|view| view.has(&spec.centre(voxel)));
+    VoxelGrid::from_values(spec, spec.voxels().map(|voxel| u8::from(is_seen(voxel))).collect())
 }
 
 /// Planes that bound a camera's field of view, camera frame, normals inwards.

@@ -1,7 +1,7 @@
 //! Once per keyframe: from the aggregated scene to the labels.
 
 use nalgebra::Point3;
-use occlabel_aggregate::{Moment, compose};
+use occlabel_aggregate::{Moment, TrackBox, compose};
 use occlabel_core::{
     AggregatedScene, ClassId, Evidence, Keyframe, OccupancyLabels, Pose, RayCounts, Scene,
     VoxelGrid, VoxelState, VoxelVote,
@@ -78,16 +78,10 @@ pub fn label_keyframe(
     mut enter: impl FnMut(Stage),
 ) -> LabelledKeyframe {
     let (spec, ground) = (&rules.spec, &rules.taxonomy.flat);
-    let reference = scene.reference_sweep(keyframe);
-    let grid_from_world = rules.world_from_grid(reference).inverse();
 
     enter(Stage::Voxelize);
-    let moment = Moment {
-        time: keyframe.time,
-        grid_from_world,
-        reference_lidar: grid_from_world * reference.world_from_lidar() * Point3::origin(),
-        standing: &standing_boxes(&scene.tracks, keyframe.time, rules),
-    };
+    let standing = standing_boxes(&scene.tracks, keyframe.time, rules);
+    let moment = moment(scene, keyframe, rules, &standing);
     let instant = compose(aggregated, &moment, &rules.window);
     let votes = voxelize(&instant, spec, &rules.votes());
 
@@ -99,7 +93,7 @@ pub fn label_keyframe(
     let counts = options.evidence.then(|| saturated(counts));
 
     enter(Stage::Occlusion);
-    let eyes = open_eyes(scene, keyframe, &grid_from_world);
+    let eyes = open_eyes(scene, keyframe, &moment.grid_from_world);
     let camera_bits =
         visible(&eyes, lenses, spec, &matter(&states, &occupied, ground), &rules.occlusion);
 
@@ -112,7 +106,24 @@ pub fn label_keyframe(
     LabelledKeyframe { labels, rays: instant.ray_count() }
 }
 
-fn open_eyes<'a>(scene: &'a Scene, keyframe: &Keyframe, grid_from_world: &Pose) -> Vec<Eye<'a>> {
+/// The moment of a keyframe, with the boxes that stand then.
+pub(crate) fn moment<'a>(
+    scene: &Scene,
+    keyframe: &Keyframe,
+    rules: &Rules,
+    standing: &'a [TrackBox],
+) -> Moment<'a> {
+    let reference = scene.reference_sweep(keyframe);
+    let grid_from_world = rules.world_from_grid(reference).inverse();
+    let reference_lidar = grid_from_world * reference.world_from_lidar() * Point3::origin();
+    Moment { time: keyframe.time, grid_from_world, reference_lidar, standing }
+}
+
+pub(crate) fn open_eyes<'a>(
+    scene: &'a Scene,
+    keyframe: &Keyframe,
+    grid_from_world: &Pose,
+) -> Vec<Eye<'a>> {
     let eye = |exposure: &occlabel_core::Exposure| Eye {
         bit: exposure.camera,
         camera: &scene.cameras[exposure.camera].camera,

@@ -28,15 +28,17 @@ mod flow;
 mod label_keyframe;
 mod layers;
 mod memory;
+mod own_sensors;
 mod presets;
 mod rules;
 mod standing;
 
 pub use aggregate_scene::{aggregate_scene, boxes_at, sort_scene};
-pub use config::{Autos, Config, EgoBox, GridFrame, GridTable, Limit, ReaderTables};
+pub use config::{Autos, Config, EgoBox, GridFrame, GridTable, Limit, ReaderTables, VoxelSize};
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
 pub use occlabel_occlusion::Lenses;
+pub use own_sensors::{own_points, own_view};
 pub use presets::{PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_taxonomy};
 pub use rules::Rules;
 pub use standing::standing_at;

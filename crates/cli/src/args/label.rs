@@ -22,11 +22,14 @@ pub(crate) struct LabelArgs {
     #[arg(long, value_delimiter = ',', value_name = "TOKEN,...")]
     pub(crate) keyframes: Vec<String>,
     /// Write `evidence.npz` beside `labels.npz`.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "dialect")]
     pub(crate) evidence: bool,
-    /// Further grids of the same aggregation: voxel sizes in metres to pool the labels into, and
-    /// files with a `[grid]` to label in.
-    #[arg(long, value_delimiter = ',', value_name = "SIZE|FILE,...")]
+    /// Write the files of a dialect, in its published grid, instead of our own.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) dialect: Option<String>,
+    /// Further grids of the same aggregation: voxel sizes in metres to pool the labels into, dialects
+    /// to write in their grids, files with a `[grid]` to label in.
+    #[arg(long, value_delimiter = ',', value_name = "SIZE|DIALECT|FILE,...")]
     pub(crate) also: Vec<String>,
     /// Threads. [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

@@ -1,6 +1,8 @@
 //! The command line: what all commands share, and a file for each that has much of its own.
 
 mod compare;
+mod convert;
+mod describe;
 mod evaluate;
 mod label;
 mod log;
@@ -12,6 +14,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use compare::CompareArgs;
+pub(crate) use convert::ConvertArgs;
+pub(crate) use describe::DescribeArgs;
 pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
@@ -59,6 +63,10 @@ pub(crate) enum Command {
     Evaluate(Box<EvaluateArgs>),
     /// Show how two label sets differ; exit 0 if they do not.
     Compare(CompareArgs),
+    /// Turn labels of one dialect into another's.
+    Convert(Box<ConvertArgs>),
+    /// Tell which dialect label files look like, what they hold, and what is odd about them.
+    Describe(DescribeArgs),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.

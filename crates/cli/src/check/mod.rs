@@ -11,14 +11,15 @@ use crate::check::report::Report;
 use crate::check::scene::SceneCheck;
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
-use crate::input::{Opened, open_with};
+use crate::input::{Opened, Stead, open_with};
 use crate::threads::start_threads;
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<Outcome, Stop> {
     start_threads(args.jobs);
     let mut report = Report::default();
     // A class stands in for what the taxonomy does not name, so that all of it comes to light.
-    match open_with(&args.log, &args.config, Some(ClassId(0))) {
+    match open_with(&args.log, &args.config, &Stead { class: Some(ClassId(0)), ..Stead::default() })
+    {
         Ok(opened) => check_scenes(args, &opened, console, &mut report),
         Err(Stop::Failed(faults)) => faults.into_iter().for_each(|fault| report.add_error(fault)),
         Err(usage) => {

@@ -10,10 +10,12 @@ mod report;
 mod scene_run;
 mod sweep_reader;
 mod tally;
+mod target_dialect;
 mod targets;
 mod workers;
 
 use occlabel_core::Fault;
+use occlabel_dialects::Dialect;
 use occlabel_labels::{
     Begun, JournalEntry, LabelTree, Manifest, RESUME_DIFFERS, Resume, RunFiles, RunRecord, begin,
 };
@@ -21,7 +23,7 @@ use occlabel_labels::{
 use crate::args::{LabelArgs, OnError, ResumeArg};
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
-use crate::input::{Opened, open};
+use crate::input::{Opened, Stead, open_with, published_grid};
 use crate::interrupt::Interrupt;
 use crate::label::findings::Findings;
 use crate::label::plan::Plan;
@@ -52,9 +54,11 @@ impl Job<'_> {
 pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> {
     let interrupt = Interrupt::listen();
     let threads = start_threads(args.jobs);
-    let opened = open(&args.log, &args.config)?;
+    let dialect = args.dialect.as_deref().map(Dialect::named).transpose().map_err(Stop::usage)?;
+    let grid = dialect.as_ref().map(published_grid).transpose()?;
+    let opened = open_with(&args.log, &args.config, &Stead { grid, ..Stead::default() })?;
     let tree = LabelTree::new(&args.output);
-    let targets = Targets::new(&opened, &args.also).map_err(Stop::usage)?;
+    let targets = Targets::new(&opened, dialect.as_ref(), &args.also).map_err(Stop::usage)?;
     let job = Job { args, opened: &opened, targets: &targets, console, tree, threads };
     let mut findings = Findings::default();
     let plan = Plan::make(&job, &mut findings)?;
@@ -101,7 +105,8 @@ fn label_scenes(
     Ok(outcome)
 }
 
-/// The main set's manifest, which lists those of the others, written by now.
+/// The main set's manifest, which lists those of the others, and the lists of keyframes, all of them
+/// written by now.
 fn write_manifests(
     job: &Job,
     plan: &Plan,
@@ -109,14 +114,23 @@ fn write_manifests(
     entries: &[JournalEntry],
     begun: &Begun,
 ) -> Result<Manifest, Fault> {
-    let manifest =
-        |(grid, target)| (target, records::manifest(job, plan, record, entries, (grid, target)));
-    let mut targets = job.targets.all().map(manifest);
-    let (_, mut main) = targets.next().expect("a main set");
-    for (target, manifest) in targets {
-        let folder = target.folder.as_deref().unwrap_or_default();
-        main.files.push(begun.write_below(folder, &manifest)?);
+    let mut of_all = Vec::new();
+    for target in job.targets.all() {
+        let folder = target.1.folder.as_deref();
+        let mut manifest = records::manifest(job, plan, record, entries, target);
+        if let Some(stem) = target.1.list_stem() {
+            let list = records::annotations(plan, entries);
+            let file = begun.write_of_all(folder, stem, &list)?;
+            manifest.files.extend(target.1.own_record(&file));
+            of_all.push(file);
+        }
+        manifest.files.sort();
+        if folder.is_some() {
+            of_all.push(begun.write_of_all(folder, "manifest", &manifest)?);
+        }
     }
+    let mut main = records::manifest(job, plan, record, entries, job.targets.main());
+    main.files.extend(of_all);
     main.files.sort();
     Ok(main)
 }

@@ -1,9 +1,10 @@
 //! A scene that will be labelled, and why one will not.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
+use occlabel_dialects::KeyframeInfo;
 use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::MemoryModel;
@@ -23,6 +24,8 @@ pub(crate) struct PlannedScene {
     pub(crate) name: String,
     /// What the manifest says of it, all its keyframes included.
     pub(crate) record: SceneRecord,
+    /// What lists of keyframes say of it, where a target has one.
+    pub(crate) infos: BTreeMap<String, KeyframeInfo>,
     /// The keyframes that are asked for.
     pub(crate) wanted: BTreeSet<String>,
     /// Files of its sweeps, relative to the log's root, with their sizes.
@@ -68,12 +71,14 @@ impl PlannedScene {
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
         let points = job.opened.source.scene_points(&scene);
-        let (spec, evidence) = (job.targets.largest(), job.args.evidence);
+        let spec = job.targets.largest();
+        let evidence = job.args.evidence || job.targets.need_evidence();
         let model = MemoryModel::new(points, spec, scene.cameras.len(), evidence);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
             name: name.to_owned(),
             record: scene_record(job, &scene),
+            infos: job.targets.infos(&scene).map_err(|fault| Refused::Broken(vec![fault]))?,
             wanted,
             at_once,
             memory_bytes: model.bytes(at_once.0, at_once.1),

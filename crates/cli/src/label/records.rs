@@ -1,9 +1,10 @@
 //! What a run writes about itself: its record and the manifest.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use occlabel_core::Fault;
+use occlabel_core::{Fault, Taxonomy};
+use occlabel_dialects::Annotations;
 use occlabel_labels::{
     ClassRecord, FileRecord, GridRecord, InputMark, InputRecord, JournalEntry, Manifest, Program,
     RunRecord, SceneRecord, TaxonomyRecord, inputs_hash, json_hash,
@@ -59,11 +60,11 @@ pub(crate) fn manifest(
             name: job.opened.config.taxonomy.file.clone(),
             hash: job.opened.taxonomy_hash.clone(),
         },
-        dialect: None,
-        notes: target.notes(grid),
+        dialect: target.dialect().map(|dialect| dialect.name.clone()),
+        notes: target.notes.clone(),
         grid: GridRecord::new(grid.frame(), target.spec(grid)),
-        classes: class_records(&taxonomy.names),
-        free: taxonomy.free,
+        classes: class_records(target, taxonomy),
+        free: target.dialect().map_or(taxonomy.free.into(), |dialect| dialect.classes.free),
         scenes: scene_records(plan, entries),
         files: files_of(target, entries),
     }
@@ -72,13 +73,24 @@ pub(crate) fn manifest(
 /// The files of a set, by the paths they have in it.
 fn files_of(target: &Target, entries: &[JournalEntry]) -> Vec<FileRecord> {
     let own = |entry: &JournalEntry, file: &FileRecord| {
-        let record = FileRecord { path: target.own(&file.path)?, keyframe: None, ..file.clone() };
-        Some(record.of_keyframe(&entry.scene, &entry.keyframe))
+        Some(target.own_record(file)?.of_keyframe(&entry.scene, &entry.keyframe))
     };
     let files = entries.iter().flat_map(|entry| entry.files.iter().map(move |file| (entry, file)));
     let mut files: Vec<_> = files.filter_map(|(entry, file)| own(entry, file)).collect();
     files.sort();
     files
+}
+
+/// The list of all keyframes that were finished.
+pub(crate) fn annotations(plan: &Plan, entries: &[JournalEntry]) -> Annotations {
+    let finished: BTreeSet<(&str, &str)> =
+        entries.iter().map(|entry| (entry.scene.as_str(), entry.keyframe.as_str())).collect();
+    let infos = |planned: &PlannedScene| {
+        let mut infos = planned.infos.clone();
+        infos.retain(|token, _| finished.contains(&(planned.name.as_str(), token.as_str())));
+        (planned.name.clone(), infos)
+    };
+    Annotations::of_scenes(plan.scenes.iter().map(infos).collect())
 }
 
 /// The planned scenes, with those keyframes that were finished.
@@ -94,7 +106,13 @@ fn scene_records(plan: &Plan, entries: &[JournalEntry]) -> BTreeMap<String, Scen
     plan.scenes.iter().map(record).collect()
 }
 
-fn class_records(names: &[String]) -> Vec<ClassRecord> {
-    let record = |(id, name): (usize, &String)| ClassRecord { id: id as u8, name: name.clone() };
-    names.iter().enumerate().map(record).collect()
+fn class_records(target: &Target, taxonomy: &Taxonomy) -> Vec<ClassRecord> {
+    let record = |(id, name): (u16, &String)| ClassRecord { id, name: name.clone() };
+    match target.dialect() {
+        None => (0..).zip(&taxonomy.names).map(record).collect(),
+        Some(dialect) => {
+            let classes = dialect.classes.list.iter();
+            classes.map(|class| record((class.id, &class.name))).collect()
+        }
+    }
 }

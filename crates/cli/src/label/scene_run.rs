@@ -15,7 +15,8 @@ use crate::label::findings::Findings;
 use crate::label::planned_scene::PlannedScene;
 use crate::label::sweep_reader::SweepReader;
 use crate::label::tally::{EmptyBox, Summary, Tally, VoxelCounts};
-use crate::label::targets::LabelledGrid;
+use crate::label::target_dialect::Source;
+use crate::label::targets::{KeyframeFiles, LabelledGrid};
 use crate::label::{Job, workers};
 use crate::progress::Progress;
 
@@ -52,7 +53,7 @@ struct Bench<'a> {
 /// A labelled keyframe that is not on disk yet.
 struct MadeKeyframe {
     /// In the order of writing.
-    files: Result<Vec<(TreePath, Vec<u8>)>, Fault>,
+    files: Result<KeyframeFiles, Fault>,
     /// What the journal and the report say of it.
     summary: Value,
     rays: u64,
@@ -153,11 +154,11 @@ impl SceneRun<'_> {
         let mut clock = StageClock::start();
         let [main, others @ ..] = &self.job.targets.grids[..] else { unreachable!("a main grid") };
         let LabelledKeyframe { labels, rays } = self.label_in(main, keyframe, bench, &mut clock);
-        let mut files = self.files(main, &labels, keyframe);
+        let mut files = self.files(main, &labels, keyframe, bench);
         let summary = bench.summary(&labels);
         for grid in others {
             let labelled = self.label_in(grid, keyframe, bench, &mut clock);
-            let more = self.files(grid, &labelled.labels, keyframe);
+            let more = self.files(grid, &labelled.labels, keyframe, bench);
             files = files.and_then(|files| Ok([files, more?].concat()));
         }
         MadeKeyframe { files, summary, rays, times: clock.stop() }
@@ -171,7 +172,8 @@ impl SceneRun<'_> {
         clock: &mut StageClock,
     ) -> LabelledKeyframe {
         let (_, shards) = self.planned.at_once;
-        let options = LabelOptions { evidence: self.job.args.evidence, shards };
+        let evidence = self.job.args.evidence || grid.needs_evidence();
+        let options = LabelOptions { evidence, shards };
         let (enter, rules) = (|stage| clock.enter(stage), &grid.rules);
         let Bench { scene, aggregated, lenses, .. } = bench;
         label_keyframe(scene, aggregated, lenses, keyframe, rules, &options, enter)
@@ -182,9 +184,12 @@ impl SceneRun<'_> {
         grid: &LabelledGrid,
         labels: &OccupancyLabels,
         keyframe: &Keyframe,
-    ) -> Result<Vec<(TreePath, Vec<u8>)>, Fault> {
-        let (scene, token) = (&self.planned.name, &keyframe.token);
-        let files = grid.targets.iter().map(|target| target.files(grid, labels, scene, token));
+        bench: &Bench,
+    ) -> Result<KeyframeFiles, Fault> {
+        let Bench { scene, aggregated, .. } = *bench;
+        let source = Source { scene, aggregated, keyframe, rules: &grid.rules };
+        let evidence = self.job.args.evidence;
+        let files = grid.targets.iter().map(|target| target.files(&source, labels, evidence));
         Ok(files.collect::<Result<Vec<_>, Fault>>()?.concat())
     }
 

@@ -1,26 +1,32 @@
 //! The label sets that a run writes: the one that is asked for, and others of the same aggregation.
 //!
 //! ```text
-//!   OUTPUT/            the main set, in the configuration's grid
-//!   OUTPUT/at-0.8m/    its labels pooled into voxels of 0.8 m
-//!   OUTPUT/in-fine/    labels in the grid of `fine.toml`
+//!   OUTPUT/                 the main set, in the configuration's grid
+//!   OUTPUT/at-0.8m/         its labels pooled into voxels of 0.8 m
+//!   OUTPUT/in-fine/         labels in the grid of `fine.toml`
+//!   OUTPUT/in-surroundocc/  labels in the grid and the files of a dialect
 //! ```
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use occlabel_core::{Blocks, Fault, GridSpec, OccupancyLabels};
-use occlabel_labels::{TreePath, evidence_npz, labels_npz};
-use occlabel_pipeline::{Config, GridFrame, Rules};
+use occlabel_core::{Blocks, Fault, GridSpec, OccupancyLabels, Scene};
+use occlabel_dialects::{Dialect, KeyframeInfo, scene_infos};
+use occlabel_labels::{FileRecord, TreePath, evidence_npz, labels_npz};
+use occlabel_pipeline::{Config, GridFrame, GridTable, Rules};
 use occlabel_voxelize::pool;
 
-use crate::input::{Opened, grid_of_file};
+use crate::input::{Opened, grid_of_file, published_grid};
+use crate::label::target_dialect::{Source, TargetDialect};
 
 /// The label sets that a run writes, by the grids that are labelled.
 pub(crate) struct Targets {
     /// The configuration's grid first.
     pub(crate) grids: Vec<LabelledGrid>,
 }
+
+/// The files of a keyframe.
+pub(crate) type KeyframeFiles = Vec<(TreePath, Vec<u8>)>;
 
 /// A grid that is labelled, and what is written of it.
 pub(crate) struct LabelledGrid {
@@ -34,25 +40,29 @@ pub(crate) struct Target {
     /// Below the output; none is the output itself.
     pub(crate) folder: Option<String>,
     pooled: Option<Blocks>,
+    /// None is our own layout.
+    dialect: Option<TargetDialect>,
+    /// What the arrays do not say.
+    pub(crate) notes: Vec<String>,
 }
 
 impl Targets {
-    /// The main set and those of `--also`: voxel sizes in metres to pool into, and files with a
-    /// `[grid]` to label in.
+    /// The main set and those of `--also`: voxel sizes in metres to pool into, dialects, and files
+    /// with a `[grid]` to label in.
     ///
     /// # Errors
     /// If a size makes no whole blocks of voxels, a file has no grid, or two would share a folder.
-    pub(crate) fn new(opened: &Opened, also: &[String]) -> Result<Self, Fault> {
-        let main = LabelledGrid {
-            rules: opened.rules.clone(),
-            config: opened.config.clone(),
-            targets: vec![Target { folder: None, pooled: None }],
-        };
-        let mut targets = Self { grids: vec![main] };
+    pub(crate) fn new(
+        opened: &Opened,
+        dialect: Option<&Dialect>,
+        also: &[String],
+    ) -> Result<Self, Fault> {
+        let mut targets = Self { grids: Vec::new() };
+        targets.add_grid(opened, opened.config.grid.clone(), None, dialect.cloned())?;
         for text in also {
             match text.parse::<f64>() {
                 Ok(size_m) => targets.add_pooled(text, size_m)?,
-                Err(_) => targets.add_grid(opened, Path::new(text))?,
+                Err(_) => targets.add_named(opened, text)?,
             }
         }
         targets.check_folders()?;
@@ -63,18 +73,40 @@ impl Targets {
         let fine = &self.grids[0].rules.spec;
         let blocks = Blocks::of(fine, [size_m; 3]).map_err(|fault| of_also(fault, text))?;
         let folder = Some(format!("at-{size_m}m"));
-        self.grids[0].targets.push(Target { folder, pooled: Some(blocks) });
+        let size = fine.size_m();
+        let notes = vec![format!("pooled from voxels of {} x {} x {} m", size.x, size.y, size.z)];
+        let target = Target { folder, pooled: Some(blocks), dialect: None, notes };
+        self.grids[0].targets.push(target);
         Ok(())
     }
 
-    fn add_grid(&mut self, opened: &Opened, file: &Path) -> Result<(), Fault> {
-        let mut config = opened.config.clone();
-        config.grid = grid_of_file(file)?;
-        let rules = Rules::new(&config, opened.rules.taxonomy.clone())?;
+    /// A dialect, or a file with a grid.
+    fn add_named(&mut self, opened: &Opened, text: &str) -> Result<(), Fault> {
+        if Dialect::names().contains(&text) {
+            let dialect = Dialect::named(text)?;
+            let grid = published_grid(&dialect)?;
+            return self.add_grid(opened, grid, Some(format!("in-{text}")), Some(dialect));
+        }
+        let file = Path::new(text);
         let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let folder = format!("in-{}", stem.unwrap_or_default());
-        TreePath::new(&folder)?;
-        let targets = vec![Target { folder: Some(folder), pooled: None }];
+        self.add_grid(opened, grid_of_file(file)?, Some(folder), None)
+    }
+
+    fn add_grid(
+        &mut self,
+        opened: &Opened,
+        grid: GridTable,
+        folder: Option<String>,
+        dialect: Option<Dialect>,
+    ) -> Result<(), Fault> {
+        folder.as_ref().map(TreePath::new).transpose()?;
+        let config = Config { grid, ..opened.config.clone() };
+        let taxonomy = &opened.rules.taxonomy;
+        let rules = Rules::new(&config, taxonomy.clone())?;
+        let dialect = dialect.map(|dialect| TargetDialect::new(dialect, taxonomy)).transpose()?;
+        let notes = dialect.as_ref().map_or(Ok(Vec::new()), |dialect| dialect.notes(&rules))?;
+        let targets = vec![Target { folder, pooled: None, dialect, notes }];
         self.grids.push(LabelledGrid { rules, config, targets });
         Ok(())
     }
@@ -95,13 +127,32 @@ impl Targets {
         self.grids.iter().flat_map(|grid| grid.targets.iter().map(move |target| (grid, target)))
     }
 
+    /// The set that is asked for, with its grid.
+    pub(crate) fn main(&self) -> (&LabelledGrid, &Target) {
+        (&self.grids[0], &self.grids[0].targets[0])
+    }
+
     /// The grid of most voxels: what memory is planned by.
     pub(crate) fn largest(&self) -> &GridSpec {
         let specs = self.grids.iter().map(|grid| &grid.rules.spec);
         specs.max_by_key(|spec| spec.len()).expect("a main grid")
     }
 
-    /// The files of a keyframe.
+    /// Whether a set says what only evidence knows.
+    pub(crate) fn need_evidence(&self) -> bool {
+        self.grids.iter().any(LabelledGrid::needs_evidence)
+    }
+
+    /// What a list of keyframes says of a scene; nothing if no set has such a list.
+    pub(crate) fn infos(&self, scene: &Scene) -> Result<BTreeMap<String, KeyframeInfo>, Fault> {
+        let lists = self.all().filter_map(|(_, target)| target.dialect());
+        let listing = lists.into_iter().find(|dialect| dialect.annotations.is_some());
+        listing.map_or(Ok(BTreeMap::new()), |dialect| {
+            scene_infos(scene, |token| dialect.semantics_path(&scene.name, token))
+        })
+    }
+
+    /// Files without which a keyframe is not finished.
     pub(crate) fn paths(
         &self,
         scene: &str,
@@ -114,6 +165,12 @@ impl Targets {
 }
 
 impl LabelledGrid {
+    /// Whether a set says what only evidence knows.
+    pub(crate) fn needs_evidence(&self) -> bool {
+        let dialects = self.targets.iter().filter_map(|target| target.dialect.as_ref());
+        dialects.into_iter().any(TargetDialect::needs_evidence)
+    }
+
     /// The grid's frame as manifests name it.
     pub(crate) fn frame(&self) -> &'static str {
         match self.rules.frame {
@@ -129,37 +186,62 @@ impl Target {
         self.pooled.as_ref().map_or(&grid.rules.spec, Blocks::coarse)
     }
 
-    /// What the arrays do not say.
-    pub(crate) fn notes(&self, grid: &LabelledGrid) -> Vec<String> {
-        let size = grid.rules.spec.size_m();
-        let pooled = self.pooled.iter();
-        pooled
-            .map(|_| format!("pooled from voxels of {} x {} x {} m", size.x, size.y, size.z))
-            .collect()
+    /// The name, without ending, of the file that lists all keyframes, if the dialect has one.
+    pub(crate) fn list_stem(&self) -> Option<&str> {
+        self.dialect()?.annotations.as_deref()?.strip_suffix(".json")
     }
 
-    /// The files of a keyframe, in the order of writing.
+    /// The record of a file as the set's own manifest has it; none if it is of another set.
+    pub(crate) fn own_record(&self, file: &FileRecord) -> Option<FileRecord> {
+        Some(FileRecord { path: self.own(&file.path)?, keyframe: None, ..file.clone() })
+    }
+
+    /// The dialect's name; none of our own layout.
+    pub(crate) fn dialect(&self) -> Option<&Dialect> {
+        self.dialect.as_ref().map(|target| &target.dialect)
+    }
+
+    /// The files of a keyframe, in the order of writing; evidence if it is written beside labels.
     pub(crate) fn files(
         &self,
-        grid: &LabelledGrid,
+        source: &Source,
         labels: &OccupancyLabels,
-        scene: &str,
-        token: &str,
-    ) -> Result<Vec<(TreePath, Vec<u8>)>, Fault> {
-        let taxonomy = &grid.rules.taxonomy;
+        evidence: bool,
+    ) -> Result<KeyframeFiles, Fault> {
+        let files = match &self.dialect {
+            Some(dialect) => dialect.encode(source, labels)?.files,
+            None => self.own_files(source, labels, evidence)?,
+        };
+        files.into_iter().map(|(path, bytes)| Ok((self.place(path)?, bytes))).collect()
+    }
+
+    fn own_files(
+        &self,
+        source: &Source,
+        labels: &OccupancyLabels,
+        evidence: bool,
+    ) -> Result<KeyframeFiles, Fault> {
+        let (scene, token) = (&source.scene.name, &source.keyframe.token);
+        let taxonomy = &source.rules.taxonomy;
         let pooled = self.pooled.as_ref();
         let pooled = pooled.map(|blocks| pool(labels, blocks, taxonomy.free, &taxonomy.rank));
         let labels = pooled.as_ref().unwrap_or(labels);
-        let evidence = labels.evidence.as_ref().map(evidence_npz);
-        let bytes = evidence.into_iter().chain([labels_npz(labels)]);
-        let paths = self.paths(scene, token, labels.evidence.is_some())?;
-        Ok(paths.into_iter().zip(bytes).collect())
+        let evidence = labels.evidence.as_ref().filter(|_| evidence).map(evidence_npz);
+        let evidence = evidence.map(|bytes| Ok((TreePath::evidence(scene, token)?, bytes)));
+        let labels = Ok((TreePath::labels(scene, token)?, labels_npz(labels)));
+        evidence.into_iter().chain([labels]).collect()
     }
 
+    /// Files without which a keyframe is not finished.
     fn paths(&self, scene: &str, token: &str, evidence: bool) -> Result<Vec<TreePath>, Fault> {
-        let evidence = evidence.then(|| TreePath::evidence(scene, token));
-        let paths = evidence.into_iter().chain([TreePath::labels(scene, token)]);
-        paths.map(|path| self.place(path?)).collect()
+        let paths = match &self.dialect {
+            Some(dialect) => vec![dialect.dialect.semantics_path(scene, token)?],
+            None if evidence => {
+                vec![TreePath::evidence(scene, token)?, TreePath::labels(scene, token)?]
+            }
+            None => vec![TreePath::labels(scene, token)?],
+        };
+        paths.into_iter().map(|path| self.place(path)).collect()
     }
 
     /// Where a file of the set stands in the output.
@@ -171,7 +253,7 @@ impl Target {
     }
 
     /// A file of the output as a file of the set; none if it is of another.
-    pub(crate) fn own(&self, path: &TreePath) -> Option<TreePath> {
+    fn own(&self, path: &TreePath) -> Option<TreePath> {
         let own = match &self.folder {
             None => path.as_str(),
             Some(folder) => path.as_str().strip_prefix(folder.as_str())?.strip_prefix('/')?,

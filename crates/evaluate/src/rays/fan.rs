@@ -6,17 +6,22 @@
 use nalgebra::Point3;
 use occlabel_core::GridSpec;
 
+use super::climb::{
+    Climb, Climbs,
+    Verdict::{Sure, Unsure},
+};
+use super::columns::Column;
 use super::grid::RayGrid;
 use super::hit::{RayHit, first_hit};
 use super::path::{Crossing, trace};
-use super::ray::{Axis, axes};
+use super::ray::{Axis, Start};
 use super::set::{MOST_PITCHES, RaySet};
 
-/// How far a height may be off by rounding, bits of a column; it is below 1e-9 inside any grid.
-const UNSURE: f64 = 1e-6;
+/// What the rays of a fan hit, pitch by pitch, where they hit anything.
+pub(super) type FanHits = [RayHit; MOST_PITCHES];
 
-/// What the rays of a fan hit, pitch by pitch.
-pub(super) type FanHits = [Option<RayHit>; MOST_PITCHES];
+/// Room for hits.
+pub(super) const NO_HITS: FanHits = [RayHit { flat: 0, depth_m: 0.0 }; MOST_PITCHES];
 
 /// The rays from one origin that have one azimuth.
 pub(super) struct Fan<'a> {
@@ -24,8 +29,8 @@ pub(super) struct Fan<'a> {
     rays: &'a RaySet,
     origin: &'a Point3<f64>,
     azimuth: usize,
-    /// The origin in voxels.
-    start: [f64; 3],
+    start: Start,
+    climbs: Climbs,
     /// The columns on the way.
     path: Vec<Crossing>,
     /// Whether all rays take that way. Else they are cast one by one.
@@ -34,33 +39,38 @@ pub(super) struct Fan<'a> {
 
 impl<'a> Fan<'a> {
     /// A fan that has yet to [`Self::turn`].
-    pub(super) fn new(spec: &'a GridSpec, rays: &'a RaySet, origin: &'a Point3<f64>) -> Self {
-        let start = spec.to_voxel_units(origin).into();
-        Self { spec, rays, origin, azimuth: 0, start, path: vec![], is_sure: false }
+    pub(super) fn new(grid: &RayGrid<'a>, rays: &'a RaySet, origin: &'a Point3<f64>) -> Self {
+        let (spec, start) = (grid.spec, Start::new(grid.spec, origin));
+        let climbs = Climbs::new(grid, rays, &start);
+        Self { spec, rays, origin, azimuth: 0, start, climbs, path: vec![], is_sure: false }
     }
 
     /// Turns to an azimuth.
     pub(super) fn turn(&mut self, azimuth: usize) {
-        let ([y, x], size_m) = (self.rays.azimuths()[azimuth], self.spec.size_m());
-        let line = [Axis::new(self.start[0], size_m.x, x), Axis::new(self.start[1], size_m.y, y)];
+        let [y, x] = self.rays.azimuths()[azimuth];
+        let line = [self.start.axis(0, x), self.start.axis(1, y)];
         let [nx, ny, _] = self.spec.shape();
         self.azimuth = azimuth;
         self.is_sure =
             self.spec.flat_of(self.origin).is_some() && trace(line, [nx, ny], &mut self.path);
     }
 
-    /// What the `wanted` rays hit, a bit a pitch.
-    pub(super) fn cast(&self, grid: &RayGrid, wanted: u64) -> FanHits {
-        let mut hits = [None; MOST_PITCHES];
+    /// Casts the `wanted` rays; those that hit something. A bit a pitch.
+    pub(super) fn cast(&self, grid: &RayGrid, wanted: u64, hits: &mut FanHits) -> u64 {
         if self.is_sure {
-            Sweep::new(self, grid).run(wanted, &mut hits);
-            return hits;
+            let mut sweep = Sweep { fan: self, grid, left: wanted, stopped: 0, hits };
+            sweep.run();
+            return sweep.stopped;
         }
+        let mut stopped = 0;
         for pitch in ones(wanted) {
             let direction = self.rays.direction(pitch, self.azimuth);
-            hits[pitch] = first_hit(grid, self.origin, &direction).hit();
+            if let Some(hit) = first_hit(grid, self.origin, &direction).hit() {
+                hits[pitch] = hit;
+                stopped |= 1 << pitch;
+            }
         }
-        hits
+        stopped
     }
 }
 
@@ -68,118 +78,90 @@ impl<'a> Fan<'a> {
 struct Sweep<'a> {
     fan: &'a Fan<'a>,
     grid: &'a RayGrid<'a>,
-    /// The origin's height and that of the grid, bits.
-    start: f64,
-    top: f64,
-    /// Bits that rays climb a metre of the level line, ascending.
-    slopes: [f64; MOST_PITCHES],
+    /// Rays on their way, and rays that something has stopped, a bit a pitch.
+    left: u64,
+    stopped: u64,
+    hits: &'a mut FanHits,
 }
 
-/// The heights of a ray, or of a fan, in a column: from, to.
-type Heights = [f64; 2];
-
-impl<'a> Sweep<'a> {
-    fn new(fan: &'a Fan, grid: &'a RayGrid) -> Self {
-        let bits_per_voxel = grid.columns.bits_per_voxel();
-        let bits_per_m = bits_per_voxel / fan.spec.size_m().z;
-        let mut slopes = [0.0; MOST_PITCHES];
-        for (slope, [up, level]) in slopes.iter_mut().zip(fan.rays.pitches()) {
-            *slope = up / level * bits_per_m;
-        }
-        let top = fan.spec.shape()[2] as f64 * bits_per_voxel;
-        Self { fan, grid, start: fan.start[2] * bits_per_voxel, top, slopes }
-    }
-
-    fn run(&self, wanted: u64, hits: &mut FanHits) {
-        let (mut left, mut in_m) = (wanted, 0.0);
-        let ny = self.fan.spec.shape()[1];
-        for crossing in &self.fan.path {
-            if left == 0 {
-                return;
+impl Sweep<'_> {
+    fn run(&mut self) {
+        let (fan, mut in_m) = (self.fan, 0.0);
+        let Some([mut lowest, mut highest]) = self.outermost() else { return };
+        for crossing in &fan.path {
+            let (column, span_m) = (self.grid.columns.at(crossing.column), [in_m, crossing.out_m]);
+            let is_met = fan.climbs.heights(&lowest, span_m).low() <= f64::from(column.to)
+                && fan.climbs.heights(&highest, span_m).high() >= f64::from(column.from);
+            let is_gone = in_m > highest.top_m;
+            if is_met {
+                self.stop(&column, crossing, span_m);
             }
-            let word = self.grid.columns.word(crossing.x as usize * ny + crossing.y as usize);
-            let span_m = [in_m, crossing.out_m];
-            let (lowest, highest) = (left.trailing_zeros(), left.ilog2());
-            let [low, _] = self.heights(lowest as usize, span_m);
-            let [high_in, high] = self.heights(highest as usize, span_m);
-            if word & bits([low, high]) != 0 {
-                left &= !self.stop(left, word, crossing, span_m, hits);
+            if is_gone {
+                self.left &= !(1_u64 << 63 >> self.left.leading_zeros());
             }
-            if high_in > self.top + UNSURE {
-                left &= !(1 << highest);
+            if is_met || is_gone {
+                let Some(outermost) = self.outermost() else { return };
+                [lowest, highest] = outermost;
             }
             in_m = crossing.out_m;
         }
     }
 
-    /// Ends the rays that are stopped in a column; returns them.
-    #[inline(never)]
-    fn stop(
-        &self,
-        left: u64,
-        word: u64,
-        crossing: &Crossing,
-        span_m: [f64; 2],
-        hits: &mut FanHits,
-    ) -> u64 {
-        let (mut stopped, above) = (0, f64::from(word.ilog2() + 1) + UNSURE);
-        for pitch in ones(left) {
-            let heights = self.heights(pitch, span_m);
-            if heights[0] > above {
-                break;
-            }
-            if word & bits(heights) != 0 {
-                hits[pitch] = self.hit_in(pitch, crossing);
-                stopped |= u64::from(hits[pitch].is_some()) << pitch;
-            }
-        }
-        stopped
+    /// The lowest and the highest ray that are left.
+    #[inline]
+    fn outermost(&self) -> Option<[Climb; 2]> {
+        let highest = self.left.checked_ilog2()?;
+        Some([self.left.trailing_zeros(), highest].map(|pitch| self.fan.climbs.of[pitch as usize]))
     }
 
-    #[inline(always)]
-    fn heights(&self, pitch: usize, [in_m, out_m]: [f64; 2]) -> Heights {
-        let slope = self.slopes[pitch];
-        let [in_, out] = [self.start + slope * in_m, self.start + slope * out_m];
-        [in_.min(out), in_.max(out)]
+    /// Ends the rays that are stopped in a column.
+    fn stop(&mut self, column: &Column, crossing: &Crossing, span_m: [f64; 2]) {
+        let climbs = &self.fan.climbs;
+        for pitch in ones(self.left) {
+            let climb = &climbs.of[pitch];
+            let heights = climbs.heights(climb, span_m);
+            if heights.low() > f64::from(column.to) {
+                break;
+            }
+            if heights.high() < f64::from(column.from) {
+                continue;
+            }
+            let hit = match climbs.hit(climb, heights, column.word, crossing) {
+                Sure(hit) => hit,
+                Unsure => self.look(pitch, crossing),
+            };
+            if let Some(hit) = hit {
+                self.hits[pitch] = hit;
+                self.stopped |= 1 << pitch;
+            }
+        }
+        self.left &= !self.stopped;
     }
 
     /// What a ray hits in a column, exactly.
-    fn hit_in(&self, pitch: usize, crossing: &Crossing) -> Option<RayHit> {
-        let Fan { spec, rays, origin, azimuth, .. } = *self.fan;
-        let [x, y, z] = axes(spec, origin, &rays.direction(pitch, azimuth));
-        let column = [i64::from(crossing.x), i64::from(crossing.y)];
+    #[cold]
+    fn look(&self, pitch: usize, crossing: &Crossing) -> Option<RayHit> {
+        let Fan { spec, rays, start, azimuth, .. } = self.fan;
+        let [x, y, z] = start.ray(&rays.direction(pitch, *azimuth));
         let [_, ny, nz] = spec.shape();
-        let base = (crossing.x as usize * ny + crossing.y as usize) * nz;
+        let column = crossing.column as usize;
+        let at = [column / ny, column % ny].map(|at| at as i64);
         let entry = |axis: &Axis, at: i64| (at != axis.first).then(|| axis.enters_m(at));
-        let mut voxel =
-            match entry(&x, column[0]).into_iter().chain(entry(&y, column[1])).reduce(f64::max) {
-                Some(in_m) => z.voxel_at(in_m, |met_m| met_m <= in_m),
-                None => z.first,
-            };
-        let out_m = x.leaves_m(column[0]).min(y.leaves_m(column[1]));
+        let in_m = entry(&x, at[0]).into_iter().chain(entry(&y, at[1])).reduce(f64::max);
+        let mut voxel = in_m.map_or(z.first, |in_m| z.voxel_at(in_m, |met_m| met_m <= in_m));
+        let out_m = x.leaves_m(at[0]).min(y.leaves_m(at[1]));
         while (0..nz as i64).contains(&voxel) {
-            let (flat, up_m) = (base + voxel as usize, z.leaves_m(voxel));
+            let (flat, leaves_m) = (column * nz + voxel as usize, z.leaves_m(voxel));
             if self.grid.is_occupied(flat) {
-                return Some(RayHit { flat: flat as u32, depth_m: up_m.min(out_m) });
+                return Some(RayHit { flat: flat as u32, depth_m: leaves_m.min(out_m) });
             }
-            if out_m < up_m {
+            if out_m < leaves_m {
                 return None;
             }
             voxel += z.step;
         }
         None
     }
-}
-
-/// The bits of a column that heights may touch.
-#[inline(always)]
-fn bits([from, to]: Heights) -> u64 {
-    let (from, to) = (from - UNSURE, to + UNSURE);
-    if to < 0.0 || from >= 64.0 {
-        return 0;
-    }
-    let (from, to) = (from.max(0.0) as u32, to.min(63.0) as u32);
-    (!0 << from) & (!0 >> (63 - to))
 }
 
 /// The places of the ones in a word, ascending.

@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 use occlabel_core::GridSpec;
 
 use super::grid::RayGrid;
-use super::ray::{Axis, axes};
+use super::ray::{Axis, Start};
 use super::walk::Walk;
 
 /// The first occupied voxel on a ray's way.
@@ -50,8 +50,8 @@ impl RayEnd {
 /// An origin outside the grid is no obstacle: the ray may still come into it. An origin on a face
 /// starts in the voxel above it, and a ray that goes down leaves that voxel after 0 metres.
 pub fn first_hit(grid: &RayGrid, origin: &Point3<f64>, direction: &Vector3<f64>) -> RayEnd {
-    let ray = axes(grid.spec, origin, direction);
-    let Some(mut walk) = Walk::new(ray, grid.spec.shape()) else {
+    let start = Start::new(grid.spec, origin);
+    let Some(mut walk) = Walk::new(&start, direction, grid.spec.shape()) else {
         return RayEnd::Free { depth_m: 0.0 };
     };
     loop {
@@ -72,10 +72,15 @@ pub(super) fn leaves_grid_m(
     origin: &Point3<f64>,
     direction: &Vector3<f64>,
 ) -> f64 {
-    let (ray, shape) = (axes(spec, origin, direction), spec.shape());
-    if Walk::new(ray, shape).is_none() {
+    let (start, shape) = (Start::new(spec, origin), spec.shape());
+    if Walk::new(&start, direction, shape).is_none() {
         return 0.0;
     }
     let far = |axis: &Axis, n: usize| axis.face_m(if axis.step > 0 { n as i64 } else { 0 });
-    ray.iter().zip(shape).map(|(axis, n)| far(axis, n)).fold(f64::INFINITY, f64::min)
+    start
+        .ray(direction)
+        .iter()
+        .zip(shape)
+        .map(|(axis, n)| far(axis, n))
+        .fold(f64::INFINITY, f64::min)
 }

@@ -10,6 +10,7 @@
 //! column reach into its heights. [`first_hit`] does the same for one ray, voxel by voxel;
 //! [`textbook_first_hit`] as the textbook has it.
 
+mod climb;
 mod columns;
 mod exact_sum;
 mod fan;

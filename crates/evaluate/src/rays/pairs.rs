@@ -3,7 +3,7 @@
 use nalgebra::Point3;
 use occlabel_core::Fault;
 
-use super::fan::Fan;
+use super::fan::{Fan, NO_HITS, ones};
 use super::grid::RayGrid;
 use super::hit::{RayEnd, RayHit, leaves_grid_m};
 use super::set::RaySet;
@@ -56,16 +56,16 @@ fn add_pairs(
     rays: &RaySet,
     pairs: &mut Vec<RayPair>,
 ) {
-    let mut fan = Fan::new(truth.spec, rays, origin);
+    let mut fan = Fan::new(truth, rays, origin);
+    let (mut true_hits, mut predicted) = (NO_HITS, NO_HITS);
     for azimuth in 0..rays.azimuths().len() {
         fan.turn(azimuth);
-        let true_hits = fan.cast(truth, all(rays));
-        let hit =
-            (0..).zip(&true_hits).fold(0, |hit, (at, end)| hit | u64::from(end.is_some()) << at);
-        let predicted = fan.cast(prediction, hit);
-        let pair =
-            |(truth, prediction): (&Option<_>, _)| truth.map(|truth| RayPair { truth, prediction });
-        pairs.extend(true_hits.iter().zip(predicted).filter_map(pair));
+        let hit = fan.cast(truth, all(rays), &mut true_hits);
+        let both = fan.cast(prediction, hit, &mut predicted);
+        pairs.extend(ones(hit).map(|pitch| RayPair {
+            truth: true_hits[pitch],
+            prediction: (both >> pitch & 1 == 1).then(|| predicted[pitch]),
+        }));
     }
 }
 
@@ -82,14 +82,11 @@ pub fn cast_rays(
     let azimuths = rays.azimuths().len();
     let free = |direction| RayEnd::Free { depth_m: leaves_grid_m(grid.spec, origin, &direction) };
     let mut ends: Vec<RayEnd> = rays.directions().map(free).collect();
-    let mut fan = Fan::new(grid.spec, rays, origin);
+    let (mut fan, mut hits) = (Fan::new(grid, rays, origin), NO_HITS);
     for azimuth in 0..azimuths {
         fan.turn(azimuth);
-        let hits = fan.cast(grid, all(rays));
-        for (pitch, hit) in hits.iter().enumerate() {
-            if let Some(hit) = hit {
-                ends[pitch * azimuths + azimuth] = RayEnd::Hit(*hit);
-            }
+        for pitch in ones(fan.cast(grid, all(rays), &mut hits)) {
+            ends[pitch * azimuths + azimuth] = RayEnd::Hit(hits[pitch]);
         }
     }
     Ok(ends)

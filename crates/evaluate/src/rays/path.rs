@@ -9,8 +9,8 @@ const TIE: f64 = 1e-12;
 /// A column on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Crossing {
-    pub(super) x: u32,
-    pub(super) y: u32,
+    /// `x * ny + y`.
+    pub(super) column: u32,
     /// Where the level line leaves it, metres from the origin.
     pub(super) out_m: f64,
 }
@@ -21,31 +21,44 @@ pub(super) struct Crossing {
 /// pitches; `path` then means nothing. The line starts in the grid.
 pub(super) fn trace(line: [Axis; 2], shape: [usize; 2], path: &mut Vec<Crossing>) -> bool {
     path.clear();
-    let mut voxel = line.map(|axis| axis.first);
-    let ends = [0, 1].map(|axis| if line[axis].step > 0 { shape[axis] as i64 } else { -1 });
-    let mut leaves_m = [0, 1].map(|axis| line[axis].leaves_m(voxel[axis]));
-    let mut is_sure = true;
-    while voxel[0] != ends[0] && voxel[1] != ends[1] {
-        let [x_m, y_m] = leaves_m;
-        let out_m = x_m.min(y_m);
-        is_sure &= (x_m - y_m).abs() > TIE * out_m;
-        path.push(Crossing { x: voxel[0] as u32, y: voxel[1] as u32, out_m });
-        let axis = usize::from(y_m < x_m);
-        voxel[axis] += line[axis].step;
-        leaves_m[axis] = line[axis].leaves_m(voxel[axis]);
+    let [x_line, y_line] = line;
+    let end = |axis: Axis, n: usize| if axis.step > 0 { n as i64 } else { -1 };
+    let (x_end, y_end) = (end(x_line, shape[0]), end(y_line, shape[1]));
+    let (mut x, mut y) = (x_line.first, y_line.first);
+    let (mut x_m, mut y_m) = (x_line.leaves_m(x), y_line.leaves_m(y));
+    let (mut column, mut least_gap) = (x * shape[1] as i64 + y, f64::INFINITY);
+    let x_step = x_line.step * shape[1] as i64;
+    while x != x_end && y != y_end {
+        let out_m = if x_m < y_m { x_m } else { y_m };
+        let gap = (x_m - y_m).abs() - TIE * out_m;
+        least_gap = if gap < least_gap { gap } else { least_gap };
+        path.push(Crossing { column: column as u32, out_m });
+        if x_m < y_m {
+            (x, column) = (x + x_line.step, column + x_step);
+            x_m = x_line.leaves_m(x);
+        } else {
+            (y, column) = (y + y_line.step, column + y_line.step);
+            y_m = y_line.leaves_m(y);
+        }
     }
-    is_sure
+    least_gap > 0.0
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point3;
+    use occlabel_core::GridSpec;
+
     use super::*;
+    use crate::rays::ray::Start;
 
     fn columns(start: [f64; 2], way: [f64; 2]) -> (bool, Vec<[u32; 2]>) {
         let mut path = vec![];
-        let line = [0, 1].map(|axis| Axis::new(start[axis], 1.0, way[axis]));
+        let spec = GridSpec::new([0.0; 3], [4.0, 3.0, 1.0], [1.0; 3]).unwrap();
+        let start = Start::new(&spec, &Point3::new(start[0], start[1], 0.5));
+        let line = [0, 1].map(|axis| start.axis(axis, way[axis]));
         let is_sure = trace(line, [4, 3], &mut path);
-        (is_sure, path.iter().map(|crossing| [crossing.x, crossing.y]).collect())
+        (is_sure, path.iter().map(|crossing| [crossing.column / 3, crossing.column % 3]).collect())
     }
 
     #[test]
@@ -60,6 +73,6 @@ mod tests {
     fn a_line_through_an_edge_is_not_sure() {
         assert!(!columns([0.5, 0.5], [0.6, 0.6]).0);
         assert!(!columns([1.0, 1.0], [-0.6, -0.3]).0);
-        assert!(columns([1.0, 0.5], [-0.6, -0.3]).0);
+        assert!(columns([1.0, 0.5], [-0.6, -0.4]).0);
     }
 }

@@ -1,6 +1,8 @@
 //! The voxels of one ray, one after the other.
 
-use super::ray::Axis;
+use nalgebra::Vector3;
+
+use super::ray::{Axis, Start};
 
 /// Starts farther away than this never come to the grid, voxels.
 const FAR: f64 = (1_u64 << 50) as f64;
@@ -17,10 +19,11 @@ pub(super) struct Walk {
 impl Walk {
     /// A ray at the first voxel of the grid on its way; none if it never comes there.
     #[inline]
-    pub(super) fn new(axes: [Axis; 3], shape: [usize; 3]) -> Option<Self> {
-        if !axes.iter().all(|axis| axis.start.abs() < FAR) {
+    pub(super) fn new(start: &Start, direction: &Vector3<f64>, shape: [usize; 3]) -> Option<Self> {
+        if !start.voxels.iter().all(|u| u.abs() < FAR) {
             return None;
         }
+        let axes = start.ray(direction);
         let voxel = axes.map(|axis| axis.first);
         let mut walk = Self { axes, shape: shape.map(|n| n as i64), voxel, leaves_m: [0.0; 3] };
         walk.look_ahead();
@@ -42,17 +45,19 @@ impl Walk {
     /// Moves on to the next voxel; where the last one was left, metres.
     #[inline]
     pub(super) fn advance(&mut self) -> f64 {
-        let [x, y, z] = self.leaves_m;
-        let axis = if x < y {
-            if x < z { 0 } else { 2 }
-        } else if y < z {
-            1
-        } else {
-            2
-        };
-        let left_m = self.leaves_m[axis];
-        self.voxel[axis] += self.axes[axis].step;
-        self.leaves_m[axis] = self.axes[axis].leaves_m(self.voxel[axis]);
+        let [x_m, y_m, z_m] = self.leaves_m;
+        match (x_m < y_m, x_m < z_m, y_m < z_m) {
+            (true, true, _) => self.cross::<0>(),
+            (false, _, true) => self.cross::<1>(),
+            _ => self.cross::<2>(),
+        }
+    }
+
+    #[inline(always)]
+    fn cross<const AXIS: usize>(&mut self) -> f64 {
+        let left_m = self.leaves_m[AXIS];
+        self.voxel[AXIS] += self.axes[AXIS].step;
+        self.leaves_m[AXIS] = self.axes[AXIS].leaves_m(self.voxel[AXIS]);
         left_m
     }
 

@@ -2,7 +2,9 @@
 
 use nalgebra::{Point3, Vector3};
 use occlabel_core::{GridSpec, VoxelGrid};
-use occlabel_evaluate::rays::{RayEnd, RayGrid, RaySet, cast_rays, first_hit, textbook_first_hit};
+use occlabel_evaluate::rays::{
+    RayEnd, RayGrid, RaySet, cast_rays, first_hit, ray_pairs, textbook_first_hit,
+};
 
 use crate::support::*;
 
@@ -115,9 +117,9 @@ fn a_ray_from_outside_ends_where_it_ends_from_where_it_comes_in() {
     let grid = RayGrid::new(&spec, &semantics, FREE).unwrap();
     for _ in 0..20_000 {
         let inside =
-            Point3::new(dice.from_to(0.0, 6.5), dice.from_to(0.0, 4.25), dice.from_to(0.0, 9.0));
-        let direction = Vector3::from_fn(|_, _| dice.from_to(-1.0, 1.0)).normalize();
-        let back_m = dice.from_to(0.0, 60.0);
+            Point3::new(dice.between(0.0, 6.5), dice.between(0.0, 4.25), dice.between(0.0, 9.0));
+        let direction = Vector3::from_fn(|_, _| dice.between(-1.0, 1.0)).normalize();
+        let back_m = dice.between(0.0, 60.0);
         let (origin, end) = (inside - direction * back_m, first_hit(&grid, &inside, &direction));
         let from_outside = first_hit(&grid, &origin, &direction);
         let is_met = from_outside.depth_m() < end.depth_m() + back_m - 1e-6;
@@ -172,4 +174,85 @@ fn depth_is_where_the_ray_leaves_the_voxel_or_the_grid() {
     assert_eq!(ends.map(|end| end.depth_m()), [3.25, 1.75, 0.25, 0.25, 0.0]);
     assert_eq!(ends.map(|end| end.hit().is_some()), [true, true, false, true, true]);
     assert!(ends.iter().filter_map(RayEnd::hit).all(|hit| hit.flat as usize == at(6)));
+}
+
+/// A street of the published size: ground with holes, houses, trees with crowns, cars.
+fn street(dice: &mut Dice) -> (GridSpec, VoxelGrid<u8>) {
+    let spec = GridSpec::new([-40.0, -40.0, -1.0], [40.0, 40.0, 5.4], [0.4; 3]).unwrap();
+    let mut grid = VoxelGrid::filled(&spec, FREE);
+    let mut fill = |x: [u64; 2], y: [u64; 2], z: [u64; 2], class: u8| {
+        for x in x[0]..x[1].min(200) {
+            for y in y[0]..y[1].min(200) {
+                let column = (x * 200 + y) as usize * 16;
+                grid.values_mut()[column + z[0] as usize..column + z[1] as usize].fill(class);
+            }
+        }
+    };
+    fill([0, 200], [20, 180], [1, 2], 0);
+    for _ in 0..60 {
+        let (x, y) = (dice.below(195), 20 + dice.below(150));
+        match dice.below(4) {
+            0 => fill([x, x + 1], [y, y + 1], [2, 16], 1),
+            1 => fill([x, x + 8], [y, y + 8], [9, 14], 2),
+            2 => fill([x, x + 11], [y, y + 5], [2, 6], 3),
+            _ => fill([x, x + 6], [y, y + 6], [0, 3], FREE),
+        }
+    }
+    fill([30, 170], [160, 163], [1, 16], 4);
+    (spec, grid)
+}
+
+#[test]
+fn in_a_street_all_published_rays_end_where_the_textbook_has_them() {
+    let (mut dice, rays, mut hits) = (Dice(10), RaySet::published(), 0);
+    let (spec, semantics) = street(&mut dice);
+    let grid = RayGrid::new(&spec, &semantics, FREE).unwrap();
+    for _ in 0..4 {
+        let origin = Point3::new(dice.between(-30.0, 30.0), dice.between(-20.0, 20.0), 1.84);
+        let ends = cast_rays(&grid, &origin, &rays).unwrap();
+        for (direction, end) in rays.directions().zip(&ends) {
+            let textbook = textbook_first_hit(&grid, &origin, &direction);
+            assert!(same(*end, textbook), "{origin} {direction}: {end:?}, textbook {textbook:?}");
+        }
+        hits += ends.iter().filter(|end| end.hit().is_some()).count();
+    }
+    assert!((20_000..4 * 14_040).contains(&hits), "{hits}");
+}
+
+#[test]
+fn pairs_are_the_rays_that_hit_something_in_the_truth() {
+    let (mut dice, rays) = (Dice(11), rays());
+    let spec = spec([20, 20, 16], [0.4; 3]);
+    let grids = [10, 30].map(|one_in| semantics(&spec, one_in, &mut dice));
+    let [truth, prediction] = [0, 1].map(|at| RayGrid::new(&spec, &grids[at], FREE).unwrap());
+    let origins = [[3.0, 4.1, 2.2], [8.1, 4.0, 3.3]].map(Point3::from);
+    let pairs = ray_pairs(&truth, &prediction, &origins, &rays).unwrap();
+    let mut ours: Vec<[Option<u32>; 2]> = (pairs.iter())
+        .map(|pair| [Some(pair.truth.flat), pair.prediction.map(|hit| hit.flat)])
+        .collect();
+    let mut alone = vec![];
+    for origin in &origins {
+        let flat = |grid, way| first_hit(grid, origin, &way).hit().map(|hit| hit.flat);
+        let both = rays.directions().map(|way| [&truth, &prediction].map(|grid| flat(grid, way)));
+        alone.extend(both.filter(|[truth, _]| truth.is_some()));
+    }
+    ours.sort_unstable();
+    alone.sort_unstable();
+    assert_eq!(ours, alone);
+    let free = pairs.iter().filter(|pair| pair.error_m().is_none()).count();
+    assert!(free > 50 && pairs.len() > free + 400, "{} {free}", pairs.len());
+}
+
+#[test]
+fn grids_and_origins_that_do_not_fit_are_faults() {
+    let (one, other) = (spec([4, 4, 4], [1.0; 3]), spec([4, 4, 5], [1.0; 3]));
+    let [full, taller] = [&one, &other].map(|spec| VoxelGrid::filled(spec, 0));
+    assert_eq!(RayGrid::new(&one, &taller, FREE).unwrap_err().rule, "ray-grid");
+    let [truth, prediction] = [(&one, &full), (&other, &taller)]
+        .map(|(spec, grid)| RayGrid::new(spec, grid, FREE).unwrap());
+    let pairs = |prediction, x| ray_pairs(&truth, prediction, &[Point3::new(x, 1.0, 1.0)], &rays());
+    assert_eq!(pairs(&prediction, 1.0).unwrap_err().rule, "ray-grid");
+    assert_eq!(pairs(&truth, f64::NAN).unwrap_err().rule, "ray-origin");
+    assert!(cast_rays(&truth, &Point3::new(0.0, f64::INFINITY, 0.0), &rays()).is_err());
+    assert_eq!(pairs(&truth, 1.0).unwrap().len(), rays().len());
 }

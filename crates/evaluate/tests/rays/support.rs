@@ -20,7 +20,7 @@ impl Dice {
         self.below(1 << 30) as f64 / f64::from(1 << 30)
     }
 
-    pub(crate) fn from_to(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn between(&mut self, from: f64, to: f64) -> f64 {
         from + (to - from) * self.share()
     }
 }
