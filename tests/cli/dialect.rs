@@ -7,9 +7,7 @@ use occlabel_dialects::{Annotations, KeyframeLabels, LabelSet, Wanted};
 use serde_json::json;
 
 use crate::labelled::labelled;
-use crate::support::{
-    Label, SCENE, SMALL, TestLog, files_under, leftovers, manifest, text, tree_hash,
-};
+use crate::support::{Label, SCENE, SMALL, TestLog, files_under, leftovers, manifest, tree_hash};
 
 /// A label set of a dialect, in the small grid.
 fn in_dialect(log: &TestLog, name: &str) -> Label {

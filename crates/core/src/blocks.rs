@@ -22,7 +22,7 @@ impl Blocks {
         for axis in 0..3 {
             let exact = size_m[axis] / fine.size_m()[axis];
             let whole = exact.round();
-            let divides = whole >= 1.0 && fine.shape()[axis] % (whole as usize) == 0;
+            let divides = whole >= 1.0 && fine.shape()[axis].is_multiple_of(whole as usize);
             if !divides || (exact - whole).abs() > 1e-6 {
                 return Err(no_blocks(fine, size_m));
             }

@@ -90,8 +90,8 @@ impl Earlier {
     /// Removes what tells of all keyframes: such as the manifests of label sets below the tree.
     pub(crate) fn remove_files_of_all(&self, tree: &LabelTree) -> Result<(), Fault> {
         let listed = self.manifest.iter().flat_map(|manifest| &manifest.files);
-        let of_all = listed.filter(|file| file.keyframe().is_none());
-        of_all.map(|file| remove_file(&tree.place(&file.path))).collect()
+        let mut of_all = listed.filter(|file| file.keyframe().is_none());
+        of_all.try_for_each(|file| remove_file(&tree.place(&file.path)))
     }
 
     fn paths(&self) -> BTreeSet<&TreePath> {

@@ -33,7 +33,7 @@ impl ArrayDifferences {
                 (*a != 0) != (*b != 0)
             }),
             instances: both(a.instances, b.instances, &mut any, |a, b| a != b),
-            flow: both(a.flow, b.flow, &mut any, |a, b| flows_differ(a, b)),
+            flow: both(a.flow, b.flow, &mut any, flows_differ),
         };
         (differences, any.iter().filter(|any| **any).count() as u64)
     }
