@@ -116,10 +116,10 @@ fn a_missing_prediction_is_told_and_can_be_allowed() {
     let tokens = labelled.tokens("precise");
     let part = labelled.label("precise", &["--keyframes", &tokens[1]]);
     let name = part.file_name().and_then(|name| name.to_str()).expect("a name").to_owned();
-    let missing = format!("2 missing: {SCENE}/{}", tokens[0]);
-    labelled.evaluate(&name, &[]).exits(1).tells(&[&missing, "--allow-missing"]);
-    let ended =
-        labelled.evaluate(&name, &["--allow-missing", "--json"]).exits(3).tells(&[&missing]);
+    let missing = ["2 missing: ", tokens[0].as_str(), tokens[2].as_str()];
+    let ended = labelled.evaluate(&name, &[]).exits(1);
+    ended.tells(&missing).tells(&["hint", "--allow-missing"]);
+    let ended = labelled.evaluate(&name, &["--allow-missing", "--json"]).exits(3).tells(&missing);
     let found: Value = serde_json::from_str(&ended.stdout).expect("JSON");
     assert_eq!((&found["missing"], &found["scores"]["keyframes"]), (&2.into(), &1.into()));
 }
