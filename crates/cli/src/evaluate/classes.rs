@@ -1,33 +1,11 @@
 //! Which classes are things, move, or are left out.
 
 use occlabel_core::{ClassId, ClassSet, Fault};
-use occlabel_dialects::ClassTable;
+use occlabel_dialects::{Class, ClassTable, Concepts};
 
-/// What moves by itself, as label sets name it: the eight classes of the CVPR 2024 challenge, and
-/// their like in other sets.
-const MOVERS: [&str; 21] = [
-    "car",
-    "truck",
-    "trailer",
-    "bus",
-    "construction_vehicle",
-    "bicycle",
-    "motorcycle",
-    "pedestrian",
-    "vehicle",
-    "cyclist",
-    "person",
-    "rider",
-    "train",
-    "bicyclist",
-    "motorcyclist",
-    "other-vehicle",
-    "other_vehicle",
-    "on-rails",
-    "human",
-    "animal",
-    "caravan",
-];
+/// What moves by itself, with all that is narrower: in nuScenes the eight classes whose velocity the
+/// challenge of 2024 asks for.
+const MOVERS: [&str; 4] = ["vehicle", "two_wheeler", "person", "animal"];
 
 /// The classes that are named, or those that move by themselves.
 ///
@@ -36,7 +14,7 @@ const MOVERS: [&str; 21] = [
 pub(crate) fn named(table: &ClassTable, names: Option<&[String]>) -> Result<ClassSet, Fault> {
     let known = table.names();
     let Some(names) = names else {
-        let movers = known.iter().enumerate().filter(|(_, name)| MOVERS.contains(&name.as_str()));
+        let movers = table.list.iter().enumerate().filter(|(_, class)| moves(class));
         return Ok(movers.map(|(at, _)| ClassId(at as u8)).collect());
     };
     let id = |name: &String| {
@@ -48,6 +26,12 @@ pub(crate) fn named(table: &ClassTable, names: Option<&[String]>) -> Result<Clas
     names.iter().map(id).collect()
 }
 
+fn moves(class: &Class) -> bool {
+    let above = |concept| std::iter::once(concept).chain(Concepts::shipped().above(concept));
+    let mut meanings = class.concept().into_iter().flat_map(above);
+    meanings.any(|meaning| MOVERS.contains(&meaning))
+}
+
 /// The classes that scores leave out.
 pub(crate) fn ignored(table: &ClassTable) -> ClassSet {
     let ignored = table.list.iter().enumerate().filter(|(_, class)| class.is_ignored);
@@ -57,12 +41,13 @@ pub(crate) fn ignored(table: &ClassTable) -> ClassSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use occlabel_dialects::Class;
+    use occlabel_dialects::Dialect;
 
     fn table(names: &[&str]) -> ClassTable {
         let class = |(id, name): (u16, &&str)| Class {
             id,
             name: (*name).into(),
+            concept: None,
             is_ignored: *name == "noise",
             ..Class::default()
         };
@@ -77,5 +62,25 @@ mod tests {
         assert_eq!(named(&table, Some(&["road".into()])), Ok(set(&[2])));
         assert!(named(&table, Some(&["moon".into()])).unwrap_err().to_string().contains("moon"));
         assert_eq!(ignored(&table), set(&[0]));
+    }
+
+    #[test]
+    fn what_moves_in_nuscenes_is_what_the_challenge_asks_for() {
+        let table = Dialect::named("occ3d-nuscenes").unwrap().classes;
+        let movers = named(&table, None).unwrap();
+        let names = table.names();
+        let found = (0..names.len()).filter(|&at| movers.contains(ClassId(at as u8)));
+        let found: Vec<&str> = found.map(|at| names[at].as_str()).collect();
+        let asked = [
+            "bicycle",
+            "bus",
+            "car",
+            "construction_vehicle",
+            "motorcycle",
+            "pedestrian",
+            "trailer",
+            "truck",
+        ];
+        assert_eq!(found, asked);
     }
 }
