@@ -41,7 +41,7 @@ pub(crate) fn write(
 pub(crate) fn manifest(spec: &GridSpec, dialect: Option<&str>) -> Manifest {
     let keyframes = vec!["k".to_owned()];
     let scene = SceneRecord { keyframes, ..SceneRecord::default() };
-    let name = |id: u8| ["car", "road"][usize::from(id)].to_owned();
+    let name = |id: u16| ["car", "road"][usize::from(id)].to_owned();
     Manifest {
         program: Program::current(),
         preset: None,
