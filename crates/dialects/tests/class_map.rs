@@ -77,8 +77,11 @@ fn what_does_not_come_back_is_what_the_remarks_say_is_lost() {
         for (to_name, to) in &tables {
             let there = ClassMap::between(from, to, &[]).unwrap();
             let back = ClassMap::between(to, from, &[]).unwrap();
-            let comes_back =
-                |class: &usize| back.table()[usize::from(there.table()[*class])] == *class as u8;
+            let comes_back = |class: &usize| {
+                let becomes = there.table()[*class];
+                let is_said = becomes != IGNORED || to.no_label.is_some();
+                is_said && back.table()[usize::from(becomes)] == *class as u8
+            };
             let gone = (0..from.list.len()).filter(|class| !comes_back(class));
             let gone: BTreeSet<_> = gone.map(|class| from.list[class].name.clone()).collect();
             let told = there.remarks().iter().flat_map(|remark| remark.lost.clone());
