@@ -116,6 +116,12 @@ impl Dialect {
         };
         match self.layout.arrays().iter().find(is_unwritable) {
             Some(array) => refused("bits in voxel files only, and no f16", &array.name),
+            None if self
+                .array_of(&Holds::Flow)
+                .is_some_and(|it| !(2..=3).contains(&it.components)) =>
+            {
+                refused("two or three components of flow", "others")
+            }
             None if !self.layout.has_all_columns() => refused("columns x, y, z, class", "fewer"),
             None => Ok(()),
         }

@@ -6,6 +6,28 @@
 //! keyframes in one of them; read, its labels are [`KeyframeLabels`], the same for all dialects:
 //! `[x][y][z]` from the lower corner, classes counted from 0, free the number after the last.
 //! [`Dialect::encode`] is the way back.
+//!
+//! ```
+//! use occlabel_core::VoxelGrid;
+//! use occlabel_dialects::{Dialect, KeyframeLabels, LabelSet};
+//! use occlabel_labels::LabelTree;
+//!
+//! let dialect = Dialect::named("surroundocc")?;
+//! let spec = dialect.grid.spec()?;
+//! let mut semantics = VoxelGrid::filled(&spec, dialect.classes.free_index());
+//! semantics.values_mut()[7] = 4; // the class of index 4: car
+//!
+//! let folder = tempfile::tempdir().unwrap();
+//! let labels = KeyframeLabels::of_semantics(spec, semantics);
+//! for (path, bytes) in dialect.encode(&labels, "scene-0061", "3e8750f3")?.files {
+//!     LabelTree::new(folder.path()).write(&path, &bytes)?;
+//! }
+//!
+//! let set = LabelSet::open(folder.path(), None)?;
+//! assert_eq!(set.dialect().name, "surroundocc");
+//! assert_eq!(set.read(&set.keyframes()[0])?, labels);
+//! # Ok::<(), occlabel_core::Fault>(())
+//! ```
 
 mod class_map;
 mod class_table;

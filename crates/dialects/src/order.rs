@@ -98,8 +98,11 @@ impl Order {
         if self.is_ours() {
             return bytes;
         }
-        let places = self.places(shape);
-        places.flat_map(|place| bytes[place * item..][..item].iter().copied()).collect()
+        let mut ordered = Vec::with_capacity(bytes.len());
+        for place in self.places(shape) {
+            ordered.extend_from_slice(&bytes[place * item..][..item]);
+        }
+        ordered
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rows of coordinates: one for each voxel that is not free.
 
-use occlabel_core::{Fault, GridSpec, VoxelGrid, VoxelIndex};
+use occlabel_core::{Fault, VoxelGrid, VoxelIndex};
 use occlabel_labels::{NumberArray, read_npy};
 
 use crate::class_table::UNKNOWN;
@@ -25,20 +25,25 @@ impl Found<'_> {
         let indices = self.classes.indices();
         let velocity = table.velocity().filter(|_| self.wanted.flow);
         labels.flow = velocity.map(|_| VoxelGrid::filled(self.spec, [0.0; 3]));
-        let columns = table.columns.len();
-        for (at, row) in numbers.floats().chunks_exact(columns).enumerate() {
-            let flat = table.voxel(row, self.spec).ok_or_else(|| outside(at, row))?;
-            let id = row[table.place(Column::Class)];
-            let index = indices.get(id as usize).filter(|_| id >= 0.0 && id.fract() == 0.0);
+        let place = [Column::X, Column::Y, Column::Z, Column::Class].map(|it| table.place(it));
+        for row in (0..numbers.len()).step_by(table.columns.len()) {
+            let [x, y, z, id] = place.map(|column| whole(numbers.float(row + column)));
+            let flat = self.voxel_of([x, y, z]).ok_or_else(|| outside(table, numbers, row))?;
+            let index = id.and_then(|id| indices.get(usize::try_from(id).ok()?));
             match index.copied().unwrap_or(UNKNOWN) {
-                UNKNOWN => return Err(unknown(table, numbers, id)),
+                UNKNOWN => return Err(unknown(table, numbers, row)),
                 index => labels.semantics.values_mut()[flat] = index,
             }
             if let (Some(flow), Some(columns)) = (&mut labels.flow, velocity) {
-                flow.values_mut()[flat] = columns.map(|column| row[column] as f32);
+                let part = |column| numbers.float(row + column) as f32;
+                flow.values_mut()[flat] = columns.map(part);
             }
         }
         Ok(labels)
+    }
+
+    fn voxel_of(&self, [x, y, z]: [Option<i64>; 3]) -> Option<usize> {
+        self.spec.flat(VoxelIndex([x?, y?, z?]))
     }
 }
 
@@ -73,12 +78,6 @@ impl Table {
         NumberArray::of_floats(self.number, &shape, &numbers)
     }
 
-    fn voxel(&self, row: &[f64], spec: &GridSpec) -> Option<usize> {
-        let index = |column| Some(row[self.place(column)]).filter(|index| index.fract() == 0.0);
-        let (x, y, z) = (index(Column::X)?, index(Column::Y)?, index(Column::Z)?);
-        spec.flat(VoxelIndex([x, y, z].map(|index| index as i64)))
-    }
-
     /// The columns of the velocities, if there are any.
     fn velocity(&self) -> Option<[usize; 3]> {
         let [x, y, z] = [Column::Vx, Column::Vy, Column::Vz].map(|column| self.column(column));
@@ -106,13 +105,23 @@ impl Column {
     }
 }
 
-fn outside(at: usize, row: &[f64]) -> Refusal {
-    ("voxels of the grid", format!("row {at}, {row:?}"))
+/// A number that has nothing after the point.
+fn whole(number: f64) -> Option<i64> {
+    let cut = number as i64;
+    (cut as f64 == number).then_some(cut)
 }
 
-fn unknown(table: &Table, numbers: &NumberArray, id: f64) -> Refusal {
+/// A row, by the place of its first number, that names no voxel.
+fn outside(table: &Table, numbers: &NumberArray, row: usize) -> Refusal {
+    let columns = table.columns.len();
+    let told: Vec<f64> = (row..row + columns).map(|at| numbers.float(at)).collect();
+    ("voxels of the grid", format!("row {}, {told:?}", row / columns))
+}
+
+fn unknown(table: &Table, numbers: &NumberArray, row: usize) -> Refusal {
     let place = table.place(Column::Class);
-    let rows = numbers.floats();
-    let count = rows.chunks_exact(table.columns.len()).filter(|row| row[place] == id).count();
+    let id = numbers.float(row + place);
+    let rows = (0..numbers.len()).step_by(table.columns.len());
+    let count = rows.filter(|row| numbers.float(row + place) == id).count();
     ("ids of the dialect's classes", format!("id {id} in {count} rows"))
 }

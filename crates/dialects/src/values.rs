@@ -12,7 +12,10 @@ pub(crate) type Refusal = (&'static str, String);
 pub(crate) fn classes(table: &ClassTable, array: &NumberArray) -> Result<Vec<u8>, Refusal> {
     let indices = table.indices();
     let known: Vec<u8> = match array.number {
-        NumberType::U8 => array.bytes.iter().map(|&id| indices[usize::from(id)]).collect(),
+        NumberType::U8 => {
+            let indices = *indices.first_chunk::<256>().expect("an index of each id");
+            array.bytes.iter().map(|&id| indices[usize::from(id)]).collect()
+        }
         NumberType::U16 => {
             let ids = array.bytes.as_chunks().0.iter().map(|&id| u16::from_le_bytes(id));
             ids.map(|id| indices[usize::from(id)]).collect()

@@ -3,6 +3,8 @@
 //! See numpy's own documentation (`numpy.lib.format`). Fortran order and big-endian numbers are read
 //! right; anything but plain numbers, a pickle above all, is refused.
 
+use std::io::Read;
+
 use crate::{NumberArray, NumberType};
 
 /// Longest header of an array that is accepted: version 1 of the format allows no more.
@@ -19,21 +21,18 @@ pub struct NpyHeader {
     pub is_fortran: bool,
     /// How many numbers there are along each axis.
     pub shape: Vec<usize>,
-    /// Where the numbers begin in the file.
-    pub values_at: usize,
 }
 
 /// Why a file is none of ours: what was expected, what was found.
 pub(crate) type Refusal = (String, String);
 
 impl NpyHeader {
-    /// The header at the beginning of a file.
-    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Refusal> {
-        let found = header_text(bytes);
-        let told = found.as_ref().map_or("no header", |(text, _)| text.as_str());
+    /// Reads the header that a file begins with.
+    pub(crate) fn read(source: &mut impl Read) -> Result<Self, Refusal> {
+        let found = header_text(source);
+        let told = found.as_deref().unwrap_or("no header");
         let refused = || ("an array of plain numbers".to_owned(), told.chars().take(200).collect());
-        let (text, values_at) = found.as_ref().ok_or_else(refused)?;
-        parse_text(text, *values_at).ok_or_else(refused)
+        parse_text(told).ok_or_else(refused)
     }
 
     /// The bytes that the numbers take; `None` if they cannot be counted.
@@ -44,15 +43,19 @@ impl NpyHeader {
 }
 
 impl NumberArray {
-    /// The array in the bytes of an `.npy` file.
-    pub(crate) fn parse_npy(mut bytes: Vec<u8>) -> Result<Self, Refusal> {
-        let header = NpyHeader::parse(&bytes)?;
-        let held = (bytes.len() - header.values_at) as u64;
-        if header.value_bytes() != Some(held) {
-            let expected = header.value_bytes().map_or("fewer".to_owned(), |n| n.to_string());
-            return Err((format!("{expected} bytes of numbers"), format!("{held}")));
+    /// Reads an `.npy` file to its end; there is `room` for so many bytes at first.
+    pub(crate) fn read(mut source: impl Read, room: u64) -> Result<Self, Refusal> {
+        let header = NpyHeader::read(&mut source)?;
+        let expected = header.value_bytes().ok_or_else(|| {
+            ("an array that can be counted".to_owned(), format!("{:?}", header.shape))
+        })?;
+        let mut bytes = Vec::with_capacity(expected.min(room) as usize);
+        if let Err(error) = source.read_to_end(&mut bytes) {
+            return Err(("a whole array".to_owned(), error.to_string()));
         }
-        bytes.drain(..header.values_at);
+        if bytes.len() as u64 != expected {
+            return Err((format!("{expected} bytes of numbers"), bytes.len().to_string()));
+        }
         if header.is_big_endian {
             bytes.chunks_exact_mut(header.number.size()).for_each(<[u8]>::reverse);
         }
@@ -89,21 +92,30 @@ impl NumberArray {
     }
 }
 
-/// The header's dictionary, without blanks and without the comma before a closing bracket, and where
-/// it ends.
-fn header_text(bytes: &[u8]) -> Option<(String, usize)> {
-    let version = *bytes.strip_prefix(b"\x93NUMPY")?.first()?;
-    let (text_at, length) = match version {
-        1 => (10, usize::from(u16::from_le_bytes(*bytes.get(8..)?.first_chunk()?))),
-        2 | 3 => (12, u32::from_le_bytes(*bytes.get(8..)?.first_chunk()?) as usize),
+/// The header's dictionary, without blanks and without the comma before a closing bracket.
+fn header_text(source: &mut impl Read) -> Option<String> {
+    let [magic @ .., version, _] = take::<8>(source)?;
+    let length = match version {
+        1 => usize::from(u16::from_le_bytes(take(source)?)),
+        2 | 3 => u32::from_le_bytes(take(source)?) as usize,
         _ => return None,
     };
-    let text = std::str::from_utf8(bytes.get(text_at..)?.get(..length)?).ok()?;
+    if magic != *b"\x93NUMPY" || length as u64 > MAX_HEADER_BYTES {
+        return None;
+    }
+    let mut text = vec![0; length];
+    source.read_exact(&mut text).ok()?;
+    let text = std::str::from_utf8(&text).ok()?;
     let text: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
-    Some((text.replace(",)", ")").replace(",}", "}"), text_at + length))
+    Some(text.replace(",)", ")").replace(",}", "}"))
 }
 
-fn parse_text(text: &str, values_at: usize) -> Option<NpyHeader> {
+fn take<const N: usize>(source: &mut impl Read) -> Option<[u8; N]> {
+    let mut bytes = [0; N];
+    source.read_exact(&mut bytes).ok().map(|()| bytes)
+}
+
+fn parse_text(text: &str) -> Option<NpyHeader> {
     let (descr, rest) = text.strip_prefix("{'descr':'")?.split_once('\'')?;
     let (order, rest) = rest.strip_prefix(",'fortran_order':")?.split_once(',')?;
     let sides = rest.strip_prefix("'shape':(")?.strip_suffix(")}")?;
@@ -123,7 +135,7 @@ fn parse_text(text: &str, values_at: usize) -> Option<NpyHeader> {
         "<" | "|" | "=" => false,
         _ => return None,
     };
-    Some(NpyHeader { number, is_big_endian, is_fortran, shape: shape?, values_at })
+    Some(NpyHeader { number, is_big_endian, is_fortran, shape: shape? })
 }
 
 /// Numbers whose first axis is the fastest, put into C order.
@@ -163,8 +175,8 @@ mod tests {
     #[test]
     fn an_array_survives_its_file() {
         let array = NumberArray::new(&[2, 3], &[1.5_f32, -2.0, 0.0, 4.0, 1e9, f32::MIN]);
-        assert_eq!(NumberArray::parse_npy(array.to_npy()), Ok(array));
+        assert_eq!(NumberArray::read(&array.to_npy()[..], 0), Ok(array));
         let scalar = NumberArray::new(&[], &[7_i64]);
-        assert_eq!(NumberArray::parse_npy(scalar.to_npy()), Ok(scalar));
+        assert_eq!(NumberArray::read(&scalar.to_npy()[..], 0), Ok(scalar));
     }
 }

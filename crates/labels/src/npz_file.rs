@@ -30,7 +30,7 @@ impl NpzFile {
     /// # Errors
     /// If it cannot be read, is longer, or is no zip archive.
     pub fn open(path: &Path, max_bytes: u64) -> Result<Self, Fault> {
-        let file = open_bounded(path, max_bytes)?;
+        let (file, _) = open_bounded(path, max_bytes)?;
         let zip = ZipArchive::new(BufReader::new(file)).map_err(|error| {
             Fault::new("npz", path.display().to_string(), "a zip archive", error.to_string())
         })?;
@@ -59,10 +59,8 @@ impl NpzFile {
     /// If it cannot be read, or says of other things than plain numbers.
     pub fn header(&mut self, name: &str) -> Result<Option<NpyHeader>, Fault> {
         let Self { path, zip } = self;
-        let header = find(zip, name).and_then(|entry| {
-            let bytes = entry.map(|entry| read(entry.take(MAX_HEADER_BYTES), 0)).transpose()?;
-            bytes.map(|bytes| NpyHeader::parse(&bytes)).transpose()
-        });
+        let header = find(zip, name)
+            .and_then(|entry| entry.map(|mut entry| NpyHeader::read(&mut entry)).transpose());
         header.map_err(|refusal| fault(path, Some(name), refusal))
     }
 
@@ -72,10 +70,8 @@ impl NpzFile {
     /// If it cannot be read, is longer, or holds other things than plain numbers.
     pub fn array(&mut self, name: &str, max_bytes: u64) -> Result<Option<NumberArray>, Fault> {
         let Self { path, zip } = self;
-        let array = find(zip, name).and_then(|entry| {
-            let bytes = entry.map(|entry| read_entry(entry, max_bytes)).transpose()?;
-            bytes.map(NumberArray::parse_npy).transpose()
-        });
+        let array = find(zip, name)
+            .and_then(|entry| entry.map(|entry| read_entry(entry, max_bytes)).transpose());
         array.map_err(|refusal| fault(path, Some(name), refusal))
     }
 }
@@ -85,8 +81,9 @@ impl NpzFile {
 /// # Errors
 /// If it cannot be read, is longer, or holds other things than plain numbers.
 pub fn read_npy(path: &Path, max_bytes: u64) -> Result<NumberArray, Fault> {
-    let bytes = read_bounded(path, max_bytes.saturating_add(MAX_HEADER_BYTES))?;
-    NumberArray::parse_npy(bytes).map_err(|refusal| fault(path, None, refusal))
+    let (file, bytes) = open_bounded(path, max_bytes.saturating_add(MAX_HEADER_BYTES))?;
+    let read = NumberArray::read(file.take(bytes), bytes);
+    read.map_err(|refusal| fault(path, None, refusal))
 }
 
 /// The bytes of a file of at most so many.
@@ -94,13 +91,14 @@ pub fn read_npy(path: &Path, max_bytes: u64) -> Result<NumberArray, Fault> {
 /// # Errors
 /// If it cannot be read, or is longer.
 pub fn read_bounded(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Fault> {
-    let mut file = open_bounded(path, max_bytes)?;
+    let (mut file, _) = open_bounded(path, max_bytes)?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes).map_err(|error| read_fault(path, &error))?;
     Ok(bytes)
 }
 
-fn open_bounded(path: &Path, max_bytes: u64) -> Result<File, Fault> {
+/// A file and its length.
+fn open_bounded(path: &Path, max_bytes: u64) -> Result<(File, u64), Fault> {
     let unreadable = |error| read_fault(path, &error);
     let file = File::open(path).map_err(unreadable)?;
     let bytes = file.metadata().map_err(unreadable)?.len();
@@ -109,7 +107,7 @@ fn open_bounded(path: &Path, max_bytes: u64) -> Result<File, Fault> {
         let found = format!("{bytes} bytes");
         return Err(Fault::new("npz-size", path.display().to_string(), expected, found));
     }
-    Ok(file)
+    Ok((file, bytes))
 }
 
 fn find<'a>(zip: &'a mut Zip, name: &str) -> Result<Option<ZipFile<'a, BufReader<File>>>, Refusal> {
@@ -120,7 +118,7 @@ fn find<'a>(zip: &'a mut Zip, name: &str) -> Result<Option<ZipFile<'a, BufReader
     }
 }
 
-fn read_entry(entry: ZipFile<'_, BufReader<File>>, max_bytes: u64) -> Result<Vec<u8>, Refusal> {
+fn read_entry(entry: ZipFile<'_, BufReader<File>>, max_bytes: u64) -> Result<NumberArray, Refusal> {
     let max = max_bytes.saturating_add(MAX_HEADER_BYTES);
     if entry.size() > max {
         let found = format!("{} bytes declared", entry.size());
@@ -128,15 +126,7 @@ fn read_entry(entry: ZipFile<'_, BufReader<File>>, max_bytes: u64) -> Result<Vec
     }
     let room = entry.size().min(entry.compressed_size().saturating_mul(MAX_INFLATION));
     // One byte more than there may be, so that the sum over all of them is checked.
-    read(entry.take(max + 1), room as usize)
-}
-
-fn read(mut source: impl Read, room: usize) -> Result<Vec<u8>, Refusal> {
-    let mut bytes = Vec::with_capacity(room);
-    match source.read_to_end(&mut bytes) {
-        Ok(_) => Ok(bytes),
-        Err(error) => Err(("a whole entry".to_owned(), error.to_string())),
-    }
+    NumberArray::read(entry.take(max + 1), room)
 }
 
 fn fault(path: &Path, name: Option<&str>, (expected, found): Refusal) -> Fault {

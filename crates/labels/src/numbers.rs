@@ -71,8 +71,8 @@ pub trait Number: Copy {
     /// Its type.
     const TYPE: NumberType;
 
-    /// Adds its bytes.
-    fn put(self, bytes: &mut Vec<u8>);
+    /// The bytes of numbers, little-endian.
+    fn bytes(values: &[Self]) -> Vec<u8>;
 }
 
 macro_rules! numbers {
@@ -80,8 +80,9 @@ macro_rules! numbers {
         $(impl Number for $number {
             const TYPE: NumberType = NumberType::$of;
 
-            fn put(self, bytes: &mut Vec<u8>) {
-                bytes.extend_from_slice(&self.to_le_bytes());
+            fn bytes(values: &[Self]) -> Vec<u8> {
+                let numbers: Vec<_> = values.iter().map(|value| value.to_le_bytes()).collect();
+                numbers.into_flattened()
             }
         })*
     };
@@ -96,9 +97,7 @@ impl NumberArray {
     /// If there is not one number for each place of the shape.
     pub fn new<T: Number>(shape: &[usize], values: &[T]) -> Self {
         assert_eq!(values.len(), shape.iter().product::<usize>(), "a number for each place");
-        let mut bytes = Vec::with_capacity(size_of_val(values));
-        values.iter().for_each(|value| value.put(&mut bytes));
-        Self { number: T::TYPE, shape: shape.to_vec(), bytes }
+        Self { number: T::TYPE, shape: shape.to_vec(), bytes: T::bytes(values) }
     }
 
     /// An array of whole numbers of a type; digits that the type has no room for are cut off.
@@ -111,9 +110,13 @@ impl NumberArray {
             return Self::of_floats(number, shape, &values);
         }
         assert_eq!(values.len(), shape.iter().product::<usize>(), "a number for each place");
-        let digits =
-            values.iter().flat_map(|value| value.to_le_bytes().into_iter().take(number.size()));
-        Self { number, shape: shape.to_vec(), bytes: digits.collect() }
+        let bytes = match number.size() {
+            1 => values.iter().map(|&value| value as u8).collect(),
+            2 => u16::bytes(&values.iter().map(|&value| value as u16).collect::<Vec<_>>()),
+            4 => u32::bytes(&values.iter().map(|&value| value as u32).collect::<Vec<_>>()),
+            _ => i64::bytes(values),
+        };
+        Self { number, shape: shape.to_vec(), bytes }
     }
 
     /// An array of numbers of a type; what stands after the point is cut off if the type has none.
@@ -162,16 +165,38 @@ impl NumberArray {
         })
     }
 
-    /// The numbers as f64: exact but for whole ones beyond 2^53.
-    pub fn floats(&self) -> Vec<f64> {
+    /// A number by its place: exact but for whole ones beyond 2^53.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[inline]
+    pub fn float(&self, at: usize) -> f64 {
+        use NumberType::*;
+        let bytes = &self.bytes;
         match self.number {
-            NumberType::F64 => each(&self.bytes, f64::from_le_bytes),
-            NumberType::F32 => each(&self.bytes, |v| f64::from(f32::from_le_bytes(v))),
-            NumberType::F16 => each(&self.bytes, |v| half(u16::from_le_bytes(v))),
-            NumberType::U64 => each(&self.bytes, |v| u64::from_le_bytes(v) as f64),
-            _ => self.whole().into_iter().flatten().map(|v| v as f64).collect(),
+            Bool | U8 => f64::from(bytes[at]),
+            I8 => f64::from(bytes[at] as i8),
+            U16 => f64::from(u16::from_le_bytes(number_at(bytes, at))),
+            I16 => f64::from(i16::from_le_bytes(number_at(bytes, at))),
+            U32 => f64::from(u32::from_le_bytes(number_at(bytes, at))),
+            I32 => f64::from(i32::from_le_bytes(number_at(bytes, at))),
+            U64 => u64::from_le_bytes(number_at(bytes, at)) as f64,
+            I64 => i64::from_le_bytes(number_at(bytes, at)) as f64,
+            F16 => half(u16::from_le_bytes(number_at(bytes, at))),
+            F32 => f64::from(f32::from_le_bytes(number_at(bytes, at))),
+            F64 => f64::from_le_bytes(number_at(bytes, at)),
         }
     }
+
+    /// The numbers as f64: exact but for whole ones beyond 2^53.
+    pub fn floats(&self) -> Vec<f64> {
+        (0..self.len()).map(|at| self.float(at)).collect()
+    }
+}
+
+#[inline]
+fn number_at<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
+    bytes.as_chunks().0[at]
 }
 
 fn each<const N: usize, T>(bytes: &[u8], number: impl Fn([u8; N]) -> T) -> Vec<T> {

@@ -174,6 +174,20 @@ fn semantickitti_has_its_first_voxel_in_the_highest_bit() {
 }
 
 #[test]
+fn what_a_dialect_has_no_words_for_is_told() {
+    let written = Written::of("semantickitti-predictions", |labels| {
+        labels.semantics.values_mut()[0] = occlabel_dialects::IGNORED;
+        labels.instances = Some(VoxelGrid::filled(&spec(), 0));
+        labels.extras.insert("infov".to_owned(), NumberArray::new(&[1], &[1_u8]));
+    });
+    assert_eq!(written.encoded.files[0].1[..2], [0, 0]);
+    let lost = ["flow", "infov", "instances", "mask_camera", "mask_lidar"];
+    let lost = lost.map(|what| format!("{what}: the dialect has no words for it, left out"));
+    assert_eq!(written.notes()[..5], lost);
+    assert_eq!(written.notes()[5], "semantics: voxels without a label are written as free");
+}
+
+#[test]
 fn sscbench_waymo_says_what_is_invalid() {
     let written = Written::all("sscbench-waymo");
     assert_eq!(written.paths(), ["voxels/s/k.npz"]);

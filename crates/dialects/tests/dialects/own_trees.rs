@@ -2,9 +2,9 @@
 
 use occlabel_core::{OccupancyLabels, VoxelGrid, VoxelState};
 use occlabel_dialects::{LabelSet, Wanted};
-use occlabel_labels::{LabelTree, TreePath, evidence_npz, labels_npz};
+use occlabel_labels::{evidence_npz, labels_npz};
 
-use crate::support::{manifest, spec, write_manifest};
+use crate::support::{manifest, put, spec, write_manifest};
 
 fn labels() -> OccupancyLabels {
     let spec = spec();
@@ -30,10 +30,10 @@ fn labels() -> OccupancyLabels {
 #[test]
 fn classes_and_grid_are_the_manifest_s() {
     let (folder, labels) = (tempfile::tempdir().unwrap(), labels());
-    let tree = LabelTree::new(folder.path());
-    tree.write(&TreePath::labels("s", "k").unwrap(), &labels_npz(&labels)).unwrap();
-    write_manifest(folder.path(), &manifest(&spec(), None));
-    let set = LabelSet::open(folder.path(), None).unwrap();
+    let root = folder.path();
+    put(root, "gts/s/k/labels.npz", &labels_npz(&labels));
+    write_manifest(root, &manifest(&spec(), None));
+    let set = LabelSet::open(root, None).unwrap();
     assert_eq!((set.dialect().name.as_str(), set.frame()), ("occlabel", "lidar"));
     assert_eq!(set.classes().names(), ["car", "road"]);
     let key = &set.keyframes()[0];
@@ -46,12 +46,11 @@ fn classes_and_grid_are_the_manifest_s() {
 #[test]
 fn instances_and_flow_are_the_evidence_s_if_wanted() {
     let (folder, labels) = (tempfile::tempdir().unwrap(), labels());
-    let tree = LabelTree::new(folder.path());
-    tree.write(&TreePath::labels("s", "k").unwrap(), &labels_npz(&labels)).unwrap();
-    let evidence = evidence_npz(labels.evidence());
-    tree.write(&TreePath::evidence("s", "k").unwrap(), &evidence).unwrap();
-    write_manifest(folder.path(), &manifest(&spec(), None));
-    let set = LabelSet::open(folder.path(), None).unwrap();
+    let root = folder.path();
+    put(root, "gts/s/k/labels.npz", &labels_npz(&labels));
+    put(root, "gts/s/k/evidence.npz", &evidence_npz(labels.evidence()));
+    write_manifest(root, &manifest(&spec(), None));
+    let set = LabelSet::open(root, None).unwrap();
     let key = &set.keyframes()[0];
     assert!(set.has_evidence(key) && set.read(key).unwrap().flow.is_none());
     let read = set.read_with(key, &Wanted::ALL).unwrap();

@@ -1,12 +1,10 @@
 //! Files that are refused, and what is said of them.
 
-use std::path::Path;
-
 use occlabel_core::Fault;
 use occlabel_dialects::{LabelSet, Wanted};
 use occlabel_labels::{NumberArray, npz};
 
-use crate::support::{dialect, manifest, spec, write_manifest};
+use crate::support::{dialect, manifest, put, spec, write_manifest};
 
 const MASKS: [&str; 2] = ["mask_lidar", "mask_camera"];
 
@@ -26,12 +24,6 @@ fn read(name: &str, file: &str, bytes: &[u8]) -> Result<(), Fault> {
     put(folder.path(), file, bytes);
     let set = LabelSet::open(folder.path(), None)?;
     set.read_with(&set.keyframes()[0], &Wanted::ALL).map(drop)
-}
-
-fn put(root: &Path, file: &str, bytes: &[u8]) {
-    let place = root.join(file);
-    std::fs::create_dir_all(place.parent().unwrap()).unwrap();
-    std::fs::write(place, bytes).unwrap();
 }
 
 #[test]

@@ -6,7 +6,7 @@ use occlabel_core::VoxelGrid;
 use occlabel_dialects::{Dialect, Holds, IGNORED, KeyframeLabels, LabelSet, Layout, Note, Wanted};
 use occlabel_labels::NumberArray;
 
-use crate::support::{dialect, free, manifest, spec, write, write_manifest};
+use crate::support::{dialect, free, manifest, put, spec, write, write_manifest};
 
 /// Numbers without a pattern, the same each time (SplitMix64).
 pub(crate) struct Random(pub(crate) u64);
@@ -107,6 +107,39 @@ fn the_same_labels_give_the_same_bytes() {
         let encode = || dialect.encode(&labels(&dialect, &mut Random(1)), "s", "k").unwrap();
         assert_eq!(encode(), encode(), "{}", dialect.name);
     }
+}
+
+#[test]
+fn fault_34_damaged_files_are_read_or_refused_and_nothing_else() {
+    let (mut random, mut refused, mut tried) = (Random(9), 0, 0);
+    for dialect in Dialect::all() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = write(folder.path(), &dialect, &labels(&dialect, &mut random), "s", "k").files;
+        write_manifest(folder.path(), &manifest(&spec(), Some(&dialect.name)));
+        let set = LabelSet::open(folder.path(), None).unwrap();
+        for (path, bytes) in files.iter().cycle().take(60) {
+            put(folder.path(), path.as_str(), &damaged(bytes, &mut random));
+            let read = set.read_with(&set.keyframes()[0], &Wanted::ALL);
+            refused += usize::from(read.is_err());
+            put(folder.path(), path.as_str(), bytes);
+            tried += 1;
+        }
+    }
+    assert!(tried == 60 * 14 && refused > tried / 3 && refused < tried, "{refused} of {tried}");
+}
+
+/// Bytes of which some are others, or of which the end is missing.
+fn damaged(bytes: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    if random.below(4) == 0 {
+        bytes.truncate(random.below(bytes.len() as u64) as usize);
+        return bytes;
+    }
+    for _ in 0..=random.below(3) {
+        let at = random.below(bytes.len() as u64) as usize;
+        bytes[at] = random.below(256) as u8;
+    }
+    bytes
 }
 
 #[test]

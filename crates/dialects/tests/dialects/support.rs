@@ -5,7 +5,7 @@ use std::path::Path;
 
 use occlabel_core::{GridSpec, VoxelGrid};
 use occlabel_dialects::{Dialect, Encoded, KeyframeLabels};
-use occlabel_labels::{GridRecord, LabelTree, Manifest, Program, SceneRecord, TaxonomyRecord};
+use occlabel_labels::{GridRecord, Manifest, Program, SceneRecord, TaxonomyRecord};
 
 /// A grid with three different sides, so that no two axes can be mixed up unseen.
 pub(crate) fn spec() -> GridSpec {
@@ -32,9 +32,16 @@ pub(crate) fn write(
 ) -> Encoded {
     let encoded = dialect.encode(labels, scene, token).unwrap();
     for (path, bytes) in &encoded.files {
-        LabelTree::new(root).write(path, bytes).unwrap();
+        put(root, path.as_str(), bytes);
     }
     encoded
+}
+
+/// Writes a file and its folders, without waiting for the disk.
+pub(crate) fn put(root: &Path, file: &str, bytes: &[u8]) {
+    let place = root.join(file);
+    std::fs::create_dir_all(place.parent().unwrap()).unwrap();
+    std::fs::write(place, bytes).unwrap();
 }
 
 /// A manifest of one scene of one keyframe.
