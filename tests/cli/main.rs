@@ -4,6 +4,7 @@ mod also;
 mod arrays;
 mod compare;
 mod configuration;
+mod convert;
 #[cfg(unix)]
 mod interrupted;
 mod labelled;

@@ -240,3 +240,27 @@ fn semantickittis_raw_names_become_what_its_own_map_says() {
         assert_eq!(found, expected, "{raw}");
     }
 }
+
+/// A heading `### FROM to TO` of docs/convert.md, and the lines of the block below it.
+fn documented() -> Vec<([String; 2], Vec<String>)> {
+    let page = include_str!("../../../docs/convert.md");
+    let sections = page.split("\n### ").skip(1);
+    let section = |text: &str| {
+        let (heading, rest) = text.split_once('\n').unwrap();
+        let names = heading.split_once(" to ").unwrap();
+        let block = rest.split("```").nth(1).unwrap();
+        let lines = block.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
+        ([names.0.trim_matches('`').to_owned(), names.1.trim_matches('`').to_owned()], lines)
+    };
+    sections.map(section).collect()
+}
+
+#[test]
+fn the_documents_lines_are_those_of_the_program() {
+    let documented = documented();
+    assert!(documented.len() >= 8, "{}", documented.len());
+    for ([from, to], told) in documented {
+        let map = map(&format!("dialects/{from}"), &format!("dialects/{to}"));
+        assert_eq!(lines(&map), told, "{from} to {to}");
+    }
+}
