@@ -41,9 +41,9 @@ fn there_and_back_is_the_same_labels() {
 #[test]
 fn what_is_lost_is_printed_and_stands_in_the_manifest() {
     let (_log, output, ended) = converted("occ3d-nuscenes-submission", &[]);
-    let notes = manifest(&output)["notes"].clone();
+    let told = manifest(&output);
     let notes: Vec<&str> =
-        notes.as_array().expect("notes").iter().filter_map(Value::as_str).collect();
+        told["notes"].as_array().expect("notes").iter().filter_map(Value::as_str).collect();
     assert!(notes.iter().all(|note| ended.stdout.contains(note)), "{notes:?}\n{}", ended.stdout);
     let begins = |start: &str| notes.iter().any(|note| note.starts_with(start));
     for start in
@@ -73,7 +73,7 @@ fn wrong_names_are_usage() {
     let output = log.beside("converted");
     let tree = &label.output;
     convert(tree, "occ3d", &output, &[]).exits(2).tells(&["one of occ3d-nuscenes"]);
-    convert(tree, "uniocc", &output, &["--map", "lorry=car"]).exits(2).tells(&["`lorry`"]);
+    convert(tree, "uniocc", &output, &["--map", "lorry=vehicle"]).exits(2).tells(&["`lorry`"]);
     convert(tree, "uniocc", &output, &["--scenes", "elsewhere"]).exits(2).tells(&["`elsewhere`"]);
     assert!(!output.exists());
 }
@@ -88,10 +88,10 @@ fn describe_tells_a_tree_and_a_file_and_strict_fails_on_suspicion() {
     assert_eq!(told["contents"]["grid"]["shape"], serde_json::json!([40, 40, 8]));
 
     let names: Vec<String> = files_under(&output).into_keys().collect();
-    let file = names.iter().find(|name| name.ends_with("labels.npz")).expect("a file");
-    occlabel(&["describe", text(&output.join(file)), "--strict"]).exits(0);
-    let line = ["describe", text(&output.join(file)), "--dialect", "uniocc"];
-    assert_ne!(occlabel(&line).code, Some(0));
-    fs::write(output.join(file), b"PK torn").expect("a file");
-    occlabel(&["describe", text(&output.join(file))]).exits(1);
+    let name = names.iter().find(|name| name.ends_with("labels.npz")).expect("a file");
+    let file = output.join(name);
+    occlabel(&["describe", text(&file), "--strict"]).exits(0);
+    occlabel(&["describe", text(&file), "--dialect", "uniocc"]).exits(1);
+    fs::write(&file, b"PK torn").expect("a file");
+    occlabel(&["describe", text(&file)]).exits(1);
 }
