@@ -4,6 +4,7 @@ mod also;
 mod arrays;
 mod compare;
 mod configuration;
+mod convert;
 mod dialect;
 #[cfg(unix)]
 mod interrupted;

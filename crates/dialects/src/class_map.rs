@@ -55,8 +55,10 @@ impl ClassMap {
             pairs[index_of(from, class)?] = (target(to, becomes)?, Reason::Told);
         }
         let back = table(to.list.iter().map(|class| like(class, from).0), from);
-        let survives =
-            |(class, pair): (usize, &(u8, Reason))| usize::from(back[usize::from(pair.0)]) == class;
+        let can_say = |index| index != IGNORED || to.no_label.is_some();
+        let survives = |(class, pair): (usize, &(u8, Reason))| {
+            can_say(pair.0) && usize::from(back[usize::from(pair.0)]) == class
+        };
         let survive: Vec<bool> = pairs.iter().enumerate().map(survives).collect();
         Ok(Self {
             remarks: remarks(from, to, &pairs, &survive),

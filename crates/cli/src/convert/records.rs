@@ -10,7 +10,7 @@ use occlabel_labels::{
 };
 use serde_json::{Map, Value, json};
 
-use crate::convert::job::Job;
+use crate::convert::job::{Job, NO_SCENE};
 use crate::convert::report::Report;
 
 /// What makes this conversion what it is.
@@ -86,21 +86,31 @@ fn class_record(class: &Class) -> ClassRecord {
     ClassRecord { id: class.id, name: class.name.clone() }
 }
 
-/// The scenes: what the labels' own manifest says of them, with what was converted.
+/// The scenes with what was converted of them; in order of time where the labels' own manifest tells it,
+/// with what else that says.
 fn scenes(job: &Job) -> BTreeMap<String, SceneRecord> {
-    let mut scenes: BTreeMap<String, SceneRecord> = BTreeMap::new();
+    let mut tokens: BTreeMap<&str, Vec<&String>> = BTreeMap::new();
     for key in &job.keys {
-        let known = || job.scenes.get(&key.scene).map(|scene| mapped(job, scene));
-        let scene = scenes.entry(job.scene_of(key).to_owned());
-        let scene = scene.or_insert_with(|| known().unwrap_or_default());
-        scene.keyframes.push(key.token.clone());
+        tokens.entry(&key.scene).or_default().push(&key.token);
     }
-    scenes
+    let record = |scene: &str, tokens: Vec<&String>| match job.scenes.get(scene) {
+        Some(known) => {
+            let mut record = mapped(job, known);
+            record.keyframes.retain(|token| tokens.contains(&token));
+            record
+        }
+        None => {
+            let keyframes = tokens.into_iter().cloned().collect();
+            SceneRecord { keyframes, ..SceneRecord::default() }
+        }
+    };
+    let named = |scene: &str| if scene.is_empty() { NO_SCENE } else { scene }.to_owned();
+    tokens.into_iter().map(|(scene, tokens)| (named(scene), record(scene, tokens))).collect()
 }
 
-/// A scene without its keyframes, the classes of its tracks as they are now called.
+/// A scene, the classes of its tracks as they are now called.
 fn mapped(job: &Job, scene: &SceneRecord) -> SceneRecord {
-    let mut scene = SceneRecord { keyframes: Vec::new(), ..scene.clone() };
+    let mut scene = scene.clone();
     let from = job.set.classes();
     for track in &mut scene.tracks {
         let at = track.class.as_ref().and_then(|name| from.names().iter().position(|n| n == name));

@@ -49,7 +49,6 @@ mod tests {
             name: (*name).into(),
             concept: None,
             is_ignored: *name == "noise",
-            ..Class::default()
         };
         ClassTable { free: 99, no_label: None, list: (0..).zip(names).map(class).collect() }
     }

@@ -7,7 +7,7 @@ use occlabel_core::{Fault, GridSpec, VoxelGrid};
 
 use crate::decode::Places;
 use crate::describe::ids::{self, IdCounts};
-use crate::describe::{VoxelTally, raw};
+use crate::describe::{MotionCounts, VoxelTally, motion, raw};
 use crate::{Class, ClassTable, Dialect, Holds, IGNORED, KeyframeLabels, LabelSet, Wanted};
 
 /// What was found in the files of keyframes, added up in any order.
@@ -19,6 +19,8 @@ pub struct Examined {
     pub tally: VoxelTally,
     /// Masks by their names: how many voxels are neither 0 nor 1, and of how many.
     pub odd_masks: BTreeMap<String, (u64, u64)>,
+    /// What keyframes have in common with the next, where poses are known.
+    pub motion: MotionCounts,
     /// Keyframes that the dialect cannot be read from.
     pub refused: u64,
     /// Which of them is the first, and why.
@@ -32,7 +34,9 @@ impl Examined {
     /// If a file cannot be read at all.
     pub fn of_keyframe(set: &LabelSet, at: usize) -> Result<Self, Fault> {
         let key = &set.keyframes()[at];
-        Self::of(set.dialect(), &|name| set.place(key, name), set.spec(), at)
+        let mut found = Self::of(set.dialect(), &|name| set.place(key, name), set.spec(), at)?;
+        found.motion = motion_from(set, at).unwrap_or_default();
+        Ok(found)
     }
 
     /// What is in the files of a keyframe, taken for a dialect's.
@@ -67,10 +71,25 @@ impl AddAssign for Examined {
             let sum = self.odd_masks.entry(name).or_default();
             *sum = (sum.0 + odd, sum.1 + all);
         }
+        self.motion += other.motion;
         self.refused += other.refused;
         self.first_refusal =
             [self.first_refusal.take(), other.first_refusal].into_iter().flatten().min();
     }
+}
+
+/// What a keyframe has in common with the next of its scene; `None` if either is not read, or its files
+/// do not tell where it stood.
+fn motion_from(set: &LabelSet, at: usize) -> Option<MotionCounts> {
+    let [one, other] = [set.keyframes().get(at)?, set.keyframes().get(at + 1)?];
+    if one.scene != other.scene || !motion::tells_poses(set.dialect()) {
+        return None;
+    }
+    let wanted = Wanted { extras: true, ..Wanted::default() };
+    let [one, other] = [set.read_with(one, &wanted).ok()?, set.read_with(other, &wanted).ok()?];
+    let other_from_world = motion::world_from_grid(&other)?.inverse();
+    let other_from_one = other_from_world * motion::world_from_grid(&one)?;
+    Some(MotionCounts::of([&one, &other], &other_from_one, set.classes()))
 }
 
 /// The labels of a keyframe; voxels whose ids are no class have no label.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::describe::{Examined, VoxelTally, ids};
+use crate::describe::{Examined, MotionCounts, VoxelTally, ids};
 use crate::{ClassTable, Dialect, Layout};
 
 /// Something that looks wrong.
@@ -39,6 +39,7 @@ pub(crate) fn all(dialect: &Dialect, examined: &Examined) -> Vec<Suspicion> {
     let rules = [upside_down, outside_lidar, not_subset, empty, full];
     let of_voxels = rules.iter().filter_map(|rule| rule(&examined.tally, &dialect.classes));
     suspicions.extend(of_voxels);
+    suspicions.extend(reversed(&examined.motion));
     suspicions
 }
 
@@ -71,6 +72,17 @@ fn refused(dialect: &Dialect, examined: &Examined) -> Option<Suspicion> {
 fn mask_values((name, (count, all)): (&String, &(u64, u64))) -> Option<Suspicion> {
     let text = format!("{count} of {all} values of {name} are neither 0 nor 1");
     Suspicion::of("mask-values", *count, *all, text)
+}
+
+fn reversed(motion: &MotionCounts) -> Option<Suspicion> {
+    let axis = motion.reversed_axis()?;
+    let (asked, as_it_is, mirrored) = (motion.asked, motion.as_it_is, motion.mirrored[axis]);
+    let text = format!(
+        "of {asked} occupied voxels {as_it_is} are so at the next keyframe where the poses put them, \
+         {mirrored} if {} is reversed",
+        ["x", "y"][axis],
+    );
+    Suspicion::of("axis-reversed", mirrored, asked, text)
 }
 
 fn upside_down(tally: &VoxelTally, _: &ClassTable) -> Option<Suspicion> {

@@ -1,5 +1,6 @@
 //! The dialects by their files: what is written, read back, guessed and refused.
 
+mod convert;
 mod golden;
 mod guess;
 mod own_trees;

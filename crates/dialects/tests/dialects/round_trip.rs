@@ -1,13 +1,15 @@
 //! What was written is read back.
 
+use std::collections::BTreeSet;
+
 use occlabel_core::VoxelGrid;
-use occlabel_dialects::{Dialect, Holds, IGNORED, KeyframeLabels, LabelSet, Layout, Wanted};
+use occlabel_dialects::{Dialect, Holds, IGNORED, KeyframeLabels, LabelSet, Layout, Note, Wanted};
 use occlabel_labels::NumberArray;
 
 use crate::support::{dialect, free, manifest, put, spec, write, write_manifest};
 
 /// Numbers without a pattern, the same each time (SplitMix64).
-struct Random(u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     fn below(&mut self, limit: u64) -> u64 {
@@ -26,7 +28,7 @@ impl Random {
 }
 
 /// Labels that say all that a dialect can say.
-fn labels(dialect: &Dialect, random: &mut Random) -> KeyframeLabels {
+pub(crate) fn labels(dialect: &Dialect, random: &mut Random) -> KeyframeLabels {
     let free_index = dialect.classes.free_index();
     let mut labels = free(dialect, &spec());
     labels.semantics = random.grid(|random| match random.below(3) {
@@ -68,13 +70,22 @@ fn flow(dialect: &Dialect, labels: &KeyframeLabels, random: &mut Random) -> Voxe
 }
 
 fn read_back(dialect: &Dialect, labels: &KeyframeLabels) -> KeyframeLabels {
+    let (read, notes) = read_back_noting(dialect, labels);
+    assert!(notes.is_empty(), "{notes:?}");
+    read
+}
+
+/// What is read back, and what the writer noted.
+pub(crate) fn read_back_noting(
+    dialect: &Dialect,
+    labels: &KeyframeLabels,
+) -> (KeyframeLabels, BTreeSet<Note>) {
     let folder = tempfile::tempdir().unwrap();
     let encoded = write(folder.path(), dialect, labels, "s", "k");
-    assert!(encoded.notes.is_empty(), "{:?}", encoded.notes);
     write_manifest(folder.path(), &manifest(&spec(), Some(&dialect.name)));
     let set = LabelSet::open(folder.path(), None).unwrap();
     assert_eq!(set.dialect().name, dialect.name);
-    set.read_with(&set.keyframes()[0], &Wanted::ALL).unwrap()
+    (set.read_with(&set.keyframes()[0], &Wanted::ALL).unwrap(), encoded.notes)
 }
 
 #[test]
