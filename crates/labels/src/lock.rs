@@ -180,11 +180,11 @@ mod tests {
     #[test]
     fn fault_39_the_lock_of_a_process_that_is_gone_is_taken_over() {
         let (_folder, tree, path) = tree();
-        create_dir(path.parent().unwrap()).unwrap();
         let mut gone = std::process::Command::new("true").spawn().unwrap();
         gone.wait().unwrap();
         let restarted = Owner { began: Some(1), ..Owner::this_process() };
         for stale in [format!("{}\n", gone.id()), restarted.text()] {
+            create_dir(path.parent().unwrap()).unwrap();
             fs::write(&path, &stale).unwrap();
             let lock = WriterLock::of_scene(&tree, "s").unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), lock.owner.text());
