@@ -68,6 +68,7 @@ fn the_published_grid_is_taken_unless_one_is_set() {
     assert_eq!(grid["frame"], "lidar");
     assert_eq!(grid["min_m"], json!([-50.0, -50.0, -5.0]));
     assert_eq!(grid["shape"], json!([200, 200, 16]));
+    assert!(!label.output.join("gts").exists(), "a folder of locks is left");
     let file = format!("dense_voxels_with_semantic/{}.npy", log.keyframes()[0]);
     assert!(label.output.join(&file).is_file(), "{file}");
 }

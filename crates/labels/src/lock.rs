@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
 
-use crate::atomic::{create_dir, create_exclusive, remove_empty_dirs, remove_file};
+use crate::atomic::{create_dir, create_exclusive, remove_file};
 use crate::files::read_fault;
 use crate::{LabelTree, TreePath};
 
@@ -17,8 +17,6 @@ const TRIES: usize = 3;
 #[derive(Debug)]
 pub struct WriterLock {
     path: PathBuf,
-    /// Folders above the lock go with it as far as they are empty, up to this one.
-    root: PathBuf,
     owner: Owner,
 }
 
@@ -30,20 +28,15 @@ impl WriterLock {
     pub fn of_scene(tree: &LabelTree, scene: &str) -> Result<Self, Fault> {
         let path = tree.place(&TreePath::lock(scene)?);
         create_dir(path.parent().unwrap_or(tree.root()))?;
-        Self::acquire_in(path, tree.root())
+        Self::acquire(path)
     }
 
     /// Locks by a file in a folder that is there.
     pub(crate) fn acquire(path: PathBuf) -> Result<Self, Fault> {
-        let root = path.parent().unwrap_or(Path::new("")).to_owned();
-        Self::acquire_in(path, &root)
-    }
-
-    fn acquire_in(path: PathBuf, root: &Path) -> Result<Self, Fault> {
         let owner = Owner::this_process();
         for _ in 0..TRIES {
             if create_exclusive(&path, owner.text().as_bytes())? || take_over(&path, &owner)? {
-                return Ok(Self { path, root: root.to_owned(), owner });
+                return Ok(Self { path, owner });
             }
         }
         let place = path.display().to_string();
@@ -55,7 +48,6 @@ impl Drop for WriterLock {
     fn drop(&mut self) {
         if fs::read_to_string(&self.path).is_ok_and(|text| text == self.owner.text()) {
             let _ = remove_file(&self.path);
-            remove_empty_dirs(self.path.parent().unwrap_or(&self.root), &self.root);
         }
     }
 }

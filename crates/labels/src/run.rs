@@ -11,7 +11,7 @@ use occlabel_core::Fault;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::atomic::{create_dir, remove_file, write_file};
+use crate::atomic::{create_dir, remove_empty_dirs, remove_file, write_file};
 use crate::differences::in_one_line;
 use crate::earlier::{Earlier, mark_report};
 use crate::{
@@ -133,7 +133,20 @@ impl Begun {
         write_file(&self.files.report(), &json::pretty(&report))?;
         write_file(&self.files.manifest(), &manifest.to_json())?;
         remove_file(&self.files.journal())?;
-        remove_file(&self.files.run())
+        remove_file(&self.files.run())?;
+        self.remove_empty_scenes(manifest);
+        Ok(())
+    }
+
+    /// Layouts other than ours leave nothing in the folders that scenes were locked by. Shards leave
+    /// them: another might be about to lock.
+    fn remove_empty_scenes(&self, manifest: &Manifest) {
+        let tree = self.files.tree();
+        let locks = manifest.scenes.keys().filter_map(|scene| TreePath::lock(scene).ok());
+        for lock in locks.filter(|_| !self.files.is_of_shard()) {
+            let place = tree.place(&lock);
+            remove_empty_dirs(place.parent().unwrap_or(tree.root()), tree.root());
+        }
     }
 }
 

@@ -31,6 +31,11 @@ impl RunFiles {
         &self.tree
     }
 
+    /// Whether it is a part of a larger run.
+    pub(crate) fn is_of_shard(&self) -> bool {
+        self.shard.is_some()
+    }
+
     /// `manifest.json`: the run is finished.
     pub fn manifest(&self) -> PathBuf {
         self.named("manifest", "json")

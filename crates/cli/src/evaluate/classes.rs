@@ -47,6 +47,7 @@ mod tests {
         let class = |(id, name): (u16, &&str)| Class {
             id,
             name: (*name).into(),
+            concept: None,
             is_ignored: *name == "noise",
         };
         ClassTable { free: 99, no_label: None, list: (0..).zip(names).map(class).collect() }
