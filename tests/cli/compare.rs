@@ -84,3 +84,19 @@ fn origins_of_rays_can_be_told() {
     fs::write(&file, "[]").unwrap();
     compare(&[tree, tree, "--ray-origins", text(&file)]).exits(1).tells(&["origins.json"]);
 }
+
+#[test]
+fn evidence_is_compared_where_both_have_it() {
+    let (log, label) = labelled(&["--evidence"]);
+    let (tree, bare) = (text(&label.output), log.beside("bare"));
+    Label::new(&log.root(), &bare).small().run().exits(0);
+    let arrays = |b: &str| {
+        json(&compare(&[tree, b, "--quick", "--json"]).exits(0))["comparison"]["arrays"].clone()
+    };
+    assert_eq!((&arrays(tree)["flow"], &arrays(tree)["instances"]), (&0.into(), &0.into()));
+    assert_eq!(arrays(text(&bare))["flow"], Value::Null);
+    let other = Label::new(&log.root(), &log.beside("other")).small();
+    other.clone().with(&["--evidence", "--set", "boxes.max_gap_s=0.1"]).run().exits(0);
+    let ended = compare(&[tree, text(&other.output), "--quick", "--json"]).exits(1);
+    assert!(json(&ended)["comparison"]["arrays"]["flow"].as_u64() > Some(0), "{}", ended.stdout);
+}

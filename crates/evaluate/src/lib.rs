@@ -54,6 +54,8 @@
 //! ```
 
 pub mod compare;
+mod exact_mean;
+mod exact_sum;
 pub mod held_out;
 pub mod rays;
 pub mod scores;

@@ -4,7 +4,7 @@ mod found;
 mod verdict;
 
 use occlabel_core::Fault;
-use occlabel_dialects::{KeyframeKey, KeyframeLabels};
+use occlabel_dialects::{KeyframeKey, KeyframeLabels, Wanted};
 use occlabel_evaluate::compare::{ComparedLabels, Comparer, Difference};
 use rayon::prelude::*;
 
@@ -15,6 +15,9 @@ use crate::exit::{Outcome, Stop};
 use crate::label_pairs::LabelPairs;
 use crate::ray_origins::RayOrigins;
 use crate::threads::start_threads;
+
+/// All that labels say in the same words in every dialect.
+const COMPARED: Wanted = Wanted { instances: true, flow: true, extras: false };
 
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Outcome, Stop> {
     start_threads(args.jobs);
@@ -47,7 +50,8 @@ fn compare(
 ) -> Result<Found, Fault> {
     let one = |(a, b): &(KeyframeKey, KeyframeKey)| {
         let origins = origins.map_or(Ok(Vec::new()), |origins| origins.of(a))?;
-        let (labels_a, labels_b) = (pairs.a.read(a)?, pairs.b.read(b)?);
+        let (labels_a, labels_b) =
+            (pairs.a.read_with(a, &COMPARED)?, pairs.b.read_with(b, &COMPARED)?);
         let (labels_a, labels_b) = (compared(&labels_a), compared(&labels_b));
         let difference: Difference = comparer.compare(&labels_a, &labels_b, &origins)?;
         Ok(Found::of(a, difference, comparer))

@@ -3,9 +3,9 @@
 use occlabel_core::VoxelGrid;
 use serde::Serialize;
 
-use super::exact_sum::ExactSum;
 use super::figures::mean;
 use super::pairs::RayPair;
+use crate::exact_sum::ExactSum;
 
 /// At which threshold a ray counts as right, metres, as published.
 const THRESHOLD_M: f64 = 2.0;

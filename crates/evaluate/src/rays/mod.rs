@@ -12,7 +12,6 @@
 
 mod climb;
 mod columns;
-mod exact_sum;
 mod fan;
 mod figures;
 mod flow;

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::exact_sum::ExactSum;
 use super::figures::mean;
 use super::pairs::RayPair;
 use super::panoptic_frame::{Fate, Frame, InstanceGrids};
+use crate::exact_sum::ExactSum;
 
 /// Segments by threshold and class, before any ratio is taken. Tallies of keyframes add up in any
 /// order.

@@ -6,9 +6,9 @@ use occlabel_core::ClassId;
 use serde::Serialize;
 
 use super::distances::squared_to_nearest;
-use super::exact_mean::ExactMean;
 use super::rules::{ScoringRules, UNLABELLED};
 use super::scorer::ScoredPair;
+use crate::exact_mean::ExactMean;
 
 /// The published evaluator adds this to each share before it inverts it.
 const EPSILON: f64 = 1e-8;

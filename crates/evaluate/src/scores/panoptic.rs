@@ -3,11 +3,11 @@
 use std::ops::AddAssign;
 
 use super::confusion::Confusion;
-use super::exact_mean::ExactMean;
 use super::pair_counts::PairCounts;
 use super::rules::ScoringRules;
 use super::scorer::ScoredPair;
 use super::segments::{Overlaps, Segment};
+use crate::exact_mean::ExactMean;
 
 /// Matches and misses of segments, by class.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

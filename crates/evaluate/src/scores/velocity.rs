@@ -7,9 +7,9 @@ use serde::Serialize;
 
 use super::confusion::mean;
 use super::detections::{detections, distance, matches};
-use super::exact_mean::ExactMean;
 use super::rules::ScoringRules;
 use super::scorer::ScoredPair;
+use crate::exact_mean::ExactMean;
 
 /// Errors by class.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

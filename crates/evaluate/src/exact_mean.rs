@@ -2,15 +2,14 @@
 
 use std::ops::AddAssign;
 
-/// Units in one: terms are rounded to 2^-64, and are whole numbers from there on.
-const UNITS: f64 = 18_446_744_073_709_551_616.0;
+use crate::exact_sum::ExactSum;
 
 /// A sum of numbers, and how many there were; the same in any order of adding.
 ///
-/// Terms have to lie within +-2^62: shares, metres and metres per second do.
+/// Terms are 0 or more, and the sum below 2^64: shares, metres and metres per second are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExactMean {
-    total: i128,
+    total: ExactSum,
     count: u64,
 }
 
@@ -18,7 +17,7 @@ impl ExactMean {
     /// Adds a term.
     #[inline]
     pub fn add(&mut self, term: f64) {
-        self.total += (term * UNITS).round() as i128;
+        self.total.add(term);
         self.count += 1;
     }
 
@@ -29,7 +28,7 @@ impl ExactMean {
 
     /// Their sum.
     pub fn sum(&self) -> f64 {
-        self.total as f64 / UNITS
+        self.total.value()
     }
 
     /// Their mean; none without terms.

@@ -7,19 +7,19 @@ use std::ops::AddAssign;
 /// What is added is cut to the unit, so that all else is whole numbers. Sums too large stay at the
 /// top.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct ExactSum(u128);
+pub(crate) struct ExactSum(u128);
 
 /// Units a one.
 const ONE: f64 = (1_u128 << 64) as f64;
 
 impl ExactSum {
     /// Adds a number; one below 0 and NaN count as 0.
-    pub(super) fn add(&mut self, number: f64) {
+    pub(crate) fn add(&mut self, number: f64) {
         *self += Self((number * ONE) as u128);
     }
 
     /// The sum, rounded once.
-    pub(super) fn value(self) -> f64 {
+    pub(crate) fn value(self) -> f64 {
         self.0 as f64 / ONE
     }
 }
