@@ -94,7 +94,10 @@ fn evidence_is_compared_where_both_have_it() {
         json(&compare(&[tree, b, "--quick", "--json"]).exits(0))["comparison"]["arrays"].clone()
     };
     assert_eq!((&arrays(tree)["flow"], &arrays(tree)["instances"]), (&0.into(), &0.into()));
-    assert_eq!(arrays(text(&bare))["flow"], Value::Null);
+    let bare = text(&bare);
+    compare(&[tree, bare, "--quick"]).exits(1).tells(&["flow in A only", "--shared-arrays"]);
+    let shared = json(&compare(&[tree, bare, "--quick", "--json", "--shared-arrays"]).exits(0));
+    assert_eq!(shared["comparison"]["arrays"]["flow"], Value::Null);
     let other = Label::new(&log.root(), &log.beside("other")).small();
     other.clone().with(&["--evidence", "--set", "boxes.max_gap_s=0.1"]).run().exits(0);
     let ended = compare(&[tree, text(&other.output), "--quick", "--json"]).exits(1);

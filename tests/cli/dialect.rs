@@ -7,7 +7,10 @@ use occlabel_dialects::{Annotations, KeyframeLabels, LabelSet, Wanted};
 use serde_json::json;
 
 use crate::labelled::labelled;
-use crate::support::{Label, SCENE, SMALL, TestLog, files_under, leftovers, manifest, tree_hash};
+use crate::support::{
+    Label, SCENE, SMALL, TestLog, files_under, leftovers, manifest, nano_spec, occlabel, text,
+    tree_hash,
+};
 
 /// A label set of a dialect, in the small grid.
 fn in_dialect(log: &TestLog, name: &str) -> Label {
@@ -162,4 +165,19 @@ fn occ3d_comes_with_its_list_of_keyframes() {
     assert!(infos.values().all(|info| !info.camera_sensor.is_empty()));
     let listed = manifest(&label.output)["files"].to_string();
     assert!(listed.contains("annotations.json"));
+}
+
+#[test]
+fn shards_are_one_set_to_whoever_reads_them() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let label = Label::new(&log.root(), &log.beside("out")).small();
+    label.clone().with(&["--shard", "0/2"]).run().exits(0);
+    let tree = text(&label.output);
+    occlabel(&["describe", tree]).exits(1).tells(&["1-of-2"]);
+    label.clone().with(&["--shard", "1/2"]).run().exits(0);
+    let whole = Label::new(&log.root(), &log.beside("whole")).small();
+    whole.run().exits(0);
+    occlabel(&["compare", tree, text(&whole.output)]).exits(0);
+    let told = occlabel(&["describe", tree]).exits(0).stdout;
+    assert!(told.contains("40 x 40 x 8") && told.contains("nothing suspicious"), "{told}");
 }

@@ -32,7 +32,7 @@ impl LabelPairs {
         let mut others = ByName::new(b.keyframes().iter());
         let (mut both, mut only_a) = (Vec::new(), Vec::new());
         for key in a.keyframes().iter().filter(is_wanted) {
-            match others.take(key) {
+            match others.take(key)? {
                 Some(other) => both.push((key.clone(), other)),
                 None => only_a.push(key.clone()),
             }
@@ -52,18 +52,30 @@ impl<'a> ByName<'a> {
         Self(by_token)
     }
 
-    fn take(&mut self, key: &KeyframeKey) -> Option<KeyframeKey> {
-        let keys = self.0.get_mut(key.token.as_str())?;
-        let is_same = |other: &&KeyframeKey| {
+    /// The same keyframe, if it is there.
+    fn take(&mut self, key: &KeyframeKey) -> Result<Option<KeyframeKey>, Fault> {
+        let Some(keys) = self.0.get_mut(key.token.as_str()) else { return Ok(None) };
+        let is_same = |other: &KeyframeKey| {
             other.scene == key.scene || other.scene.is_empty() || key.scene.is_empty()
         };
-        let at = keys.iter().position(is_same)?;
-        Some(keys.remove(at).clone())
+        let found: Vec<usize> = (0..keys.len()).filter(|&at| is_same(keys[at])).collect();
+        match found[..] {
+            [] => Ok(None),
+            [at] => Ok(Some(keys.remove(at).clone())),
+            _ => Err(ambiguous(key, found.len())),
+        }
     }
 
     fn rest(self) -> impl Iterator<Item = &'a KeyframeKey> {
         self.0.into_values().flatten()
     }
+}
+
+fn ambiguous(key: &KeyframeKey, scenes: usize) -> Fault {
+    let expected = "a token in one scene, where the other set's files name no scene";
+    Fault::new("token", "the second label set", expected, format!("it in {scenes} scenes"))
+        .record(&key.token)
+        .hint("compare --scenes one by one")
 }
 
 fn check_grids(a: &LabelSet, b: &LabelSet) -> Result<(), Fault> {

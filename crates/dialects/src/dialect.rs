@@ -101,6 +101,24 @@ impl Dialect {
         }
     }
 
+    /// In what a grid differs from the one that the dialect was published with.
+    pub fn grid_notes(&self, frame: &str, spec: &GridSpec) -> Vec<String> {
+        let mut notes = Vec::new();
+        if frame != self.grid.frame {
+            let theirs = &self.grid.frame;
+            notes.push(format!(
+                "frame: the grid stands in the {frame} frame, published in the {theirs} frame"
+            ));
+        }
+        if let Ok(published) = self.grid.spec()
+            && published != *spec
+        {
+            let (ours, theirs) = (limits(spec), limits(&published));
+            notes.push(format!("grid: {ours}, published as {theirs}; nothing is resampled"));
+        }
+        notes
+    }
+
     fn check_layout(&self) -> Result<(), Fault> {
         let refused = |expected: &str, found: &str| {
             Err(Fault::new("dialect", &self.name, expected, found).record("layout"))
@@ -128,6 +146,12 @@ impl Dialect {
             None => Ok(()),
         }
     }
+}
+
+fn limits(spec: &GridSpec) -> String {
+    let [x, y, z] = spec.shape();
+    let (min, max): ([f64; 3], [f64; 3]) = (spec.min_m().into(), spec.max_m().into());
+    format!("{x} x {y} x {z} voxels from {min:?} to {max:?} m")
 }
 
 impl DialectGrid {

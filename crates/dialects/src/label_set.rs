@@ -46,7 +46,7 @@ impl LabelSet {
     /// # Errors
     /// If no dialect has that name, there is no keyframe, or several dialects fit.
     pub fn open(folder: &Path, dialect: Option<&str>) -> Result<Self, Fault> {
-        let manifest = Manifest::load(&folder.join("manifest.json"))?;
+        let manifest = Manifest::load_tree(folder)?;
         match (dialect, manifest) {
             (Some(name), manifest) => Self::in_dialect(folder, Dialect::named(name)?, manifest),
             (None, Some(manifest)) => Self::of_manifest(folder, &manifest),

@@ -21,7 +21,7 @@ impl ScenePoses {
     /// # Errors
     /// If the manifest cannot be read.
     pub fn of_folder(folder: &Path) -> Result<Option<Self>, Fault> {
-        let manifest = Manifest::load(&folder.join("manifest.json"))?;
+        let manifest = Manifest::load_tree(folder)?;
         Ok(manifest.as_ref().map(Self::of_manifest).filter(|poses| !poses.scenes.is_empty()))
     }
 

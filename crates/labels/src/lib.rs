@@ -49,6 +49,7 @@ mod pose_record;
 mod read;
 mod run;
 mod run_files;
+mod shards;
 mod tree;
 
 pub use atomic::{create_dir, write_file};

@@ -10,7 +10,7 @@ use occlabel_core::{Fault, GridSpec};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{FileRecord, PoseRecord, json};
+use crate::{FileRecord, PoseRecord, json, shards};
 
 /// `manifest.json`: the arrays' grid, classes and tracks, and every file with its hash.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -127,6 +127,18 @@ impl Manifest {
     /// If it cannot be read, is no manifest, or lists a path that could lead out of the tree.
     pub fn load(path: &Path) -> Result<Option<Self>, Fault> {
         json::read(path)
+    }
+
+    /// Reads the manifest of a tree, or those of all shards of the run that wrote it, put together;
+    /// `None` if there is none.
+    ///
+    /// # Errors
+    /// As for [`Manifest::load`]; if a shard's is absent, or is of another run.
+    pub fn load_tree(root: &Path) -> Result<Option<Self>, Fault> {
+        match Self::load(&root.join("manifest.json"))? {
+            Some(manifest) => Ok(Some(manifest)),
+            None => shards::load(root),
+        }
     }
 
     /// The file's bytes.

@@ -27,6 +27,9 @@ pub(crate) struct CompareArgs {
     /// Only these scenes.
     #[arg(long, value_delimiter = ',', value_name = "NAME,...")]
     pub(crate) scenes: Vec<String>,
+    /// Compare the arrays that both sets have: one that only one has is no difference.
+    #[arg(long)]
+    pub(crate) shared_arrays: bool,
     /// Leave out RayIoU, which takes most of the time.
     #[arg(long)]
     pub(crate) quick: bool,

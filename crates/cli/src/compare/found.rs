@@ -1,6 +1,7 @@
 //! What was found over keyframes.
 
 use std::cmp::Ordering;
+use std::collections::BTreeSet;
 
 use occlabel_dialects::KeyframeKey;
 use occlabel_evaluate::compare::{Comparer, Difference};
@@ -10,6 +11,8 @@ use serde::Serialize;
 #[derive(Default)]
 pub(crate) struct Found {
     pub(crate) difference: Difference,
+    /// Arrays that only one of the sets has.
+    pub(crate) lacking: BTreeSet<String>,
     /// The most different first.
     pub(crate) worst: Vec<DifferingKeyframe>,
 }
@@ -28,7 +31,12 @@ pub(crate) struct DifferingKeyframe {
 
 impl Found {
     /// Of one keyframe.
-    pub(crate) fn of(key: &KeyframeKey, difference: Difference, comparer: &Comparer) -> Self {
+    pub(crate) fn of(
+        key: &KeyframeKey,
+        difference: Difference,
+        lacking: BTreeSet<String>,
+        comparer: &Comparer,
+    ) -> Self {
         let keyframe = DifferingKeyframe {
             scene: key.scene.clone(),
             keyframe: key.token.clone(),
@@ -37,12 +45,13 @@ impl Found {
             miou: difference.miou(comparer),
         };
         let worst = if keyframe.differing > 0 { vec![keyframe] } else { Vec::new() };
-        Self { difference, worst }
+        Self { difference, lacking, worst }
     }
 
     /// With what was found in others; so many of the worst are kept, and always one.
     pub(crate) fn and(mut self, other: Self, worst: usize) -> Self {
         self.difference += &other.difference;
+        self.lacking.extend(other.lacking);
         self.worst.extend(other.worst);
         self.worst.sort_by(DifferingKeyframe::order);
         self.worst.truncate(worst.max(1));

@@ -3,6 +3,8 @@
 mod found;
 mod verdict;
 
+use std::collections::BTreeSet;
+
 use occlabel_core::Fault;
 use occlabel_dialects::{KeyframeKey, KeyframeLabels, Wanted};
 use occlabel_evaluate::compare::{ComparedLabels, Comparer, Difference};
@@ -54,7 +56,8 @@ fn compare(
             (pairs.a.read_with(a, &COMPARED)?, pairs.b.read_with(b, &COMPARED)?);
         let (labels_a, labels_b) = (compared(&labels_a), compared(&labels_b));
         let difference: Difference = comparer.compare(&labels_a, &labels_b, &origins)?;
-        Ok(Found::of(a, difference, comparer))
+        let lacking = lacking(&labels_a, &labels_b);
+        Ok(Found::of(a, difference, lacking, comparer))
     };
     let add = |a: Found, b: Found| Ok(a.and(b, worst));
     pairs.both.par_iter().map(one).try_reduce(Found::default, add)
@@ -68,4 +71,20 @@ fn compared(labels: &KeyframeLabels) -> ComparedLabels<'_> {
         instances: labels.instances.as_ref(),
         flow: labels.flow.as_ref(),
     }
+}
+
+/// Arrays that one of the two does not have.
+fn lacking(a: &ComparedLabels, b: &ComparedLabels) -> BTreeSet<String> {
+    let has = |of: &ComparedLabels| {
+        [
+            ("mask_lidar", of.mask_lidar.is_some()),
+            ("mask_camera", of.mask_camera.is_some()),
+            ("instances", of.instances.is_some()),
+            ("flow", of.flow.is_some()),
+        ]
+    };
+    let differing = has(a).into_iter().zip(has(b)).filter(|((_, in_a), (_, in_b))| in_a != in_b);
+    let told = differing
+        .map(|((name, in_a), _)| format!("{name} in {} only", if in_a { "A" } else { "B" }));
+    told.collect()
 }

@@ -29,6 +29,7 @@ pub(crate) fn tell(
                 "tolerance": args.tolerance,
                 "only_a": names(&pairs.only_a),
                 "only_b": names(&pairs.only_b),
+                "arrays_lacking": found.lacking,
                 "comparison": comparison,
                 "worst": worst,
             })
@@ -54,7 +55,12 @@ fn faults(args: &CompareArgs, pairs: &LabelPairs, found: &Found) -> Vec<Fault> {
     });
     let nothing = (pairs.both.is_empty() && pairs.only_a.is_empty() && pairs.only_b.is_empty())
         .then(|| Fault::new("no-keyframes", &b, "keyframes to compare", "none in either set"));
-    [absent, more, differs, nothing].into_iter().flatten().collect()
+    let lacking = found.lacking.iter().cloned().collect::<Vec<_>>().join(", ");
+    let lacking = (!lacking.is_empty() && !args.shared_arrays).then(|| {
+        Fault::new("arrays-differ", &b, "the arrays of the first set", lacking)
+            .hint("--shared-arrays compares those that both have")
+    });
+    [absent, more, lacking, differs, nothing].into_iter().flatten().collect()
 }
 
 fn absent(place: &str, what: &str, expected: &str, keys: &[KeyframeKey]) -> Option<Fault> {

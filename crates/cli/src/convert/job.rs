@@ -32,7 +32,7 @@ impl<'a> Job<'a> {
         let map = ClassMap::between(set.classes(), &to.classes, &args.map).map_err(Stop::usage)?;
         let keys = chosen(&set, args).map_err(Stop::usage)?;
         check_tokens(&to, &keys)?;
-        let manifest = Manifest::load(&args.input.join("manifest.json"))?;
+        let manifest = Manifest::load_tree(&args.input)?;
         let scenes = manifest.map(|manifest| manifest.scenes).unwrap_or_default();
         Ok(Self { args, set, to, map, keys, scenes })
     }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use occlabel_core::GridSpec;
 use occlabel_labels::JournalEntry;
 use serde_json::{Value, json};
 
@@ -70,7 +69,7 @@ fn notes(job: &Job, entries: &[JournalEntry]) -> Vec<String> {
     if unobserved > 0 {
         notes.push(format!("unobserved: {unobserved} voxels that nobody observed are free here"));
     }
-    notes.extend(grid_notes(job));
+    notes.extend(job.to.grid_notes(job.set.frame(), job.set.spec()));
     if !job.to.layout.path().contains("{scene}") {
         notes.push("scenes: the files do not tell them".to_owned());
     }
@@ -78,28 +77,4 @@ fn notes(job: &Job, entries: &[JournalEntry]) -> Vec<String> {
         notes.push(format!("scenes: not known, all keyframes are of the scene `{NO_SCENE}`"));
     }
     notes
-}
-
-/// In what the grid differs from the one that the dialect was published with.
-fn grid_notes(job: &Job) -> Vec<String> {
-    let (published, mut notes) = (&job.to.grid, Vec::new());
-    if job.set.frame() != published.frame {
-        let (ours, theirs) = (job.set.frame(), &published.frame);
-        notes.push(format!(
-            "frame: the grid stands in the {ours} frame, published in the {theirs} frame"
-        ));
-    }
-    if let Ok(spec) = published.spec()
-        && spec != *job.set.spec()
-    {
-        let (ours, theirs) = (limits(job.set.spec()), limits(&spec));
-        notes.push(format!("grid: {ours}, published as {theirs}; nothing is resampled"));
-    }
-    notes
-}
-
-fn limits(spec: &GridSpec) -> String {
-    let [x, y, z] = spec.shape();
-    let (min, max): ([f64; 3], [f64; 3]) = (spec.min_m().into(), spec.max_m().into());
-    format!("{x} x {y} x {z} voxels from {min:?} to {max:?} m")
 }

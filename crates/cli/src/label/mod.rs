@@ -76,6 +76,7 @@ fn label_scenes(
     interrupt: &Interrupt,
 ) -> Result<Outcome, Stop> {
     let record = records::run_record(job, plan)?;
+    tell_notes(job);
     let (mut begun, finished) = begin_run(job, &record, &mut findings)?;
     let progress =
         Progress::new(job.args.progress, job.console, plan.scenes.len(), plan.keyframes());
@@ -103,6 +104,14 @@ fn label_scenes(
         job.console.result(&report.total_line());
     }
     Ok(outcome)
+}
+
+/// What the label sets do not say as our own would.
+fn tell_notes(job: &Job) {
+    for (_, target) in job.targets.all() {
+        let name = target.folder.as_deref().unwrap_or("labels");
+        target.notes.iter().for_each(|note| job.console.info(&format!("{name}: {note}")));
+    }
 }
 
 /// The main set's manifest, which lists those of the others, and the lists of keyframes, all of them

@@ -9,6 +9,8 @@ use occlabel_dialects::{Class, ClassMap, ClassTable, Dialect, Encoded, Holds, Ke
 use occlabel_labels::NumberArray;
 use occlabel_pipeline::{Rules, own_points, own_view};
 
+use crate::label::targets::frame_name;
+
 /// What a keyframe is labelled from.
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
@@ -55,7 +57,17 @@ impl TargetDialect {
         };
         let encoded = self.dialect.encode(&labels, "scene", "token")?;
         let remarks = self.map.remarks().iter().map(ToString::to_string);
-        Ok(remarks.chain(encoded.notes.iter().map(ToString::to_string)).collect())
+        let mut notes: Vec<String> =
+            remarks.chain(encoded.notes.iter().map(ToString::to_string)).collect();
+        if !self.dialect.can_say(&Holds::MaskLidar) {
+            notes.push("unobserved: what nobody observed is free here".to_owned());
+        }
+        if self.dialect.can_say(&Holds::Flow) {
+            notes.push("flow: not a number where an object's next box is not known".to_owned());
+        }
+        let frame = frame_name(rules.frame);
+        notes.extend(self.dialect.grid_notes(frame, spec));
+        Ok(notes)
     }
 
     /// The files of a keyframe.
@@ -78,17 +90,17 @@ impl TargetDialect {
             mask_camera: Some(labels.mask_camera.clone()),
             instances: evidence.map(|evidence| evidence.instances.clone()),
             flow: evidence.map(|evidence| evidence.flow.clone()),
-            extras: self.extras(source),
+            extras: self.extras(source, &labels.mask_camera),
             ..KeyframeLabels::of_semantics(source.rules.spec.clone(), labels.semantics.map(index))
         }
     }
 
-    /// What only some dialects know, as far as we do.
-    fn extras(&self, source: &Source) -> BTreeMap<String, NumberArray> {
+    /// What only some dialects know, as far as we do. What a camera sees it has in view, be it by an edge.
+    fn extras(&self, source: &Source, seen: &VoxelGrid<u8>) -> BTreeMap<String, NumberArray> {
         let Source { scene, aggregated, keyframe, rules } = *source;
         let voxels = |name: &str| {
             let grid = match name {
-                INFOV => own_view(scene, keyframe, rules),
+                INFOV => own_view(scene, keyframe, rules).zip_map(seen, |view, seen| view | seen),
                 _ => own_points(scene, aggregated, keyframe, rules),
             };
             NumberArray::new(&grid.shape(), grid.values())

@@ -88,6 +88,13 @@ impl Targets {
             return self.add_grid(opened, grid, Some(format!("in-{text}")), Some(dialect));
         }
         let file = Path::new(text);
+        if !file.is_file() {
+            let expected = format!(
+                "a voxel size in metres, a file with a [grid], or one of {}",
+                Dialect::names().join(", ")
+            );
+            return Err(Fault::new("also", "--also", expected, format!("`{text}`")));
+        }
         let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let folder = format!("in-{}", stem.unwrap_or_default());
         self.add_grid(opened, grid_of_file(file)?, Some(folder), None)
@@ -173,10 +180,7 @@ impl LabelledGrid {
 
     /// The grid's frame as manifests name it.
     pub(crate) fn frame(&self) -> &'static str {
-        match self.rules.frame {
-            GridFrame::Ego => "ego",
-            GridFrame::Lidar => "lidar",
-        }
+        frame_name(self.rules.frame)
     }
 }
 
@@ -259,6 +263,14 @@ impl Target {
             Some(folder) => path.as_str().strip_prefix(folder.as_str())?.strip_prefix('/')?,
         };
         TreePath::new(own).ok()
+    }
+}
+
+/// A frame as manifests name it.
+pub(crate) fn frame_name(frame: GridFrame) -> &'static str {
+    match frame {
+        GridFrame::Ego => "ego",
+        GridFrame::Lidar => "lidar",
     }
 }
 

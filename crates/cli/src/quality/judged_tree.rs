@@ -31,7 +31,7 @@ impl JudgedTree {
     pub(crate) fn open(folder: &Path) -> Result<Self, Fault> {
         let place = folder.join("manifest.json").display().to_string();
         let absent = || Fault::new("manifest", &place, "the manifest of a finished run", "none");
-        let manifest = Manifest::load(&folder.join("manifest.json"))?.ok_or_else(absent)?;
+        let manifest = Manifest::load_tree(folder)?.ok_or_else(absent)?;
         let config: Config = serde_json::from_value(manifest.config.clone()).map_err(|error| {
             Fault::new("manifest", &place, "a configuration", error.to_string()).record("config")
         })?;

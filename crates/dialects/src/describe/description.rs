@@ -112,7 +112,7 @@ impl Description {
             arrays: Vec::new(),
             dialects: likely.iter().map(|dialect| dialect.name.clone()).collect(),
             contents: Some(Contents::of(dialect, spec, &examined.tally)),
-            suspicions: suspicion::all(dialect, examined),
+            suspicions: suspicion::all(dialect, spec, examined),
             notes: notes(likely),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use occlabel_core::GridSpec;
 use serde::Serialize;
 
 use crate::describe::{Examined, MotionCounts, VoxelTally, ids};
@@ -34,13 +35,31 @@ impl Suspicion {
 }
 
 /// What looks wrong with keyframes, taken for those of a dialect.
-pub(crate) fn all(dialect: &Dialect, examined: &Examined) -> Vec<Suspicion> {
+pub(crate) fn all(dialect: &Dialect, spec: &GridSpec, examined: &Examined) -> Vec<Suspicion> {
     let mut suspicions = of_files(dialect, examined);
+    suspicions.extend(stretched(dialect, spec));
     let rules = [upside_down, outside_lidar, not_subset, empty, full];
     let of_voxels = rules.iter().filter_map(|rule| rule(&examined.tally, &dialect.classes));
     suspicions.extend(of_voxels);
     suspicions.extend(reversed(&examined.motion));
     suspicions
+}
+
+/// Published limits in so many voxels along an axis that these are of another form: axes may have
+/// changed places.
+fn stretched(dialect: &Dialect, spec: &GridSpec) -> Option<Suspicion> {
+    let published = Dialect::named(&dialect.name).ok()?.grid.spec().ok()?;
+    if (published.min_m(), published.max_m()) != (spec.min_m(), spec.max_m()) {
+        return None;
+    }
+    let ratio = |axis: usize| spec.size_m()[axis] / published.size_m()[axis];
+    let odd = (0..3).filter(|&axis| (ratio(axis) / ratio(0) - 1.0).abs() > 0.01).count() as u64;
+    let ([x, y, z], size) = (spec.shape(), spec.size_m());
+    let text = format!(
+        "{x} x {y} x {z} voxels make them {} x {} x {} m: axes may have changed places",
+        size.x, size.y, size.z
+    );
+    Suspicion::of("voxels-stretched", odd, 3, text)
 }
 
 fn of_files(dialect: &Dialect, examined: &Examined) -> Vec<Suspicion> {
