@@ -78,7 +78,14 @@ fn grids_asked_for_later_are_added_and_the_same_command_again_keeps_all() {
     later.clone().with(&["--also", "1.6"]).run().exits(0);
     assert_eq!(tree_hash(&later.output), hash);
     assert!(files_under(&later.output.join("gts")) == fine);
-    later.with(&["--also", "1.6", "--resume", "never"]).run().exits(0);
+    later.clone().with(&["--also", "3.2"]).run().exits(0);
+    let listed = |folder: &str| {
+        let main = manifest(&later.output)["files"].to_string();
+        main.matches(&format!("\"{folder}/")).count()
+    };
+    assert_eq!((listed("at-1.6m"), listed("at-3.2m")), (4, 4), "three keyframes and a manifest");
+    later.clone().with(&["--resume", "never"]).run().exits(0);
+    assert!(!later.output.join("at-1.6m").exists() && !later.output.join("at-3.2m").exists());
 }
 
 #[test]

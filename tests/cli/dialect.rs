@@ -72,6 +72,7 @@ fn the_published_grid_is_taken_unless_one_is_set() {
     assert_eq!(grid["min_m"], json!([-50.0, -50.0, -5.0]));
     assert_eq!(grid["shape"], json!([200, 200, 16]));
     assert!(!label.output.join("gts").exists(), "a folder of locks is left");
+    assert!(!manifest(&label.output)["notes"].to_string().contains("grid:"));
     let file = format!("dense_voxels_with_semantic/{}.npy", log.keyframes()[0]);
     assert!(label.output.join(&file).is_file(), "{file}");
 }
@@ -82,7 +83,9 @@ fn what_a_dialect_cannot_say_stands_in_its_manifest() {
     let notes = |name: &str| manifest(&in_dialect(&log, name).output)["notes"].to_string();
     assert!(notes("surroundocc").contains("mask_lidar"), "{}", notes("surroundocc"));
     assert!(notes("occ3d-waymo").contains("become vehicle"), "{}", notes("occ3d-waymo"));
-    assert_eq!(notes("occ3d-nuscenes"), "null");
+    let occ3d = manifest(&in_dialect(&log, "occ3d-nuscenes").output)["notes"].clone();
+    assert_eq!(occ3d.as_array().map(Vec::len), Some(1), "{occ3d}");
+    assert!(occ3d[0].as_str().is_some_and(|note| note.starts_with("grid: 40 x 40 x 8")), "{occ3d}");
 }
 
 #[test]

@@ -14,10 +14,13 @@ mod target_dialect;
 mod targets;
 mod workers;
 
+use std::collections::BTreeSet;
+
 use occlabel_core::Fault;
 use occlabel_dialects::Dialect;
 use occlabel_labels::{
-    Begun, JournalEntry, LabelTree, Manifest, RESUME_DIFFERS, Resume, RunFiles, RunRecord, begin,
+    Begun, FileRecord, JournalEntry, LabelTree, Manifest, RESUME_DIFFERS, Resume, RunFiles,
+    RunRecord, TreePath, begin,
 };
 
 use crate::args::{LabelArgs, OnError, ResumeArg};
@@ -140,8 +143,20 @@ fn write_manifests(
     }
     let mut main = records::manifest(job, plan, record, entries, job.targets.main());
     main.files.extend(of_all);
+    main.files.extend(earlier_manifests(job, &main)?);
     main.files.sort();
     Ok(main)
+}
+
+/// The manifests of sets that an earlier run wrote below the tree, and this one does not.
+fn earlier_manifests(job: &Job, main: &Manifest) -> Result<Vec<FileRecord>, Fault> {
+    let listed = |path: &TreePath| main.files.iter().any(|file| file.path == *path);
+    let folders: BTreeSet<&str> =
+        main.files.iter().filter_map(|file| Some(file.path.as_str().split_once('/')?.0)).collect();
+    let paths = folders.into_iter().map(|folder| TreePath::new(format!("{folder}/manifest.json")));
+    let paths = paths.collect::<Result<Vec<_>, _>>()?.into_iter();
+    let theirs = paths.filter(|path| !listed(path) && job.tree.place(path).is_file());
+    theirs.map(|path| FileRecord::of_file(&job.tree, path)).collect()
 }
 
 /// The run, and what earlier ones finished of it.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene, Timestamp};
-use occlabel_labels::{Journal, JournalEntry, TreePath, WriterLock};
+use occlabel_labels::{FileRecord, Journal, JournalEntry, TreePath, WriterLock};
 use occlabel_pipeline::{LabelOptions, LabelledKeyframe, Lenses, aggregate_scene, label_keyframe};
 use serde_json::Value;
 
@@ -44,6 +44,7 @@ struct Bench<'a> {
     scene: &'a Scene,
     aggregated: &'a AggregatedScene<ClassId>,
     lenses: Lenses,
+    finished: &'a Finished,
     /// What was lost of the scene.
     losses: Vec<Value>,
     journal: Mutex<&'a mut Journal>,
@@ -94,7 +95,8 @@ impl SceneRun<'_> {
         let losses = findings.losses_of(&scene.name);
         let (journal, done) = (Mutex::new(journal), Mutex::new(done));
         let lenses = Lenses::default();
-        let bench = Bench { scene: &scene, aggregated: &aggregated, lenses, losses, journal, done };
+        let (scene, aggregated) = (&scene, &aggregated);
+        let bench = Bench { scene, aggregated, lenses, finished, losses, journal, done };
         let is_over = || self.interrupt.is_raised();
         let (at_once, _) = self.planned.at_once;
         let make = |keyframe: &&Keyframe| self.make(keyframe, &bench);
@@ -193,16 +195,33 @@ impl SceneRun<'_> {
         Ok(files.collect::<Result<Vec<_>, Fault>>()?.concat())
     }
 
+    /// The files of a keyframe with those that an earlier run wrote of it, for sets that this one does
+    /// not write.
+    fn with_earlier(
+        &self,
+        mut files: Vec<FileRecord>,
+        keyframe: &Keyframe,
+        bench: &Bench,
+    ) -> Vec<FileRecord> {
+        let key = (self.planned.name.clone(), keyframe.token.clone());
+        let earlier = bench.finished.get(&key).into_iter().flat_map(|entry| &entry.files);
+        let is_kept = |earlier: &&FileRecord| !files.iter().any(|file| file.path == earlier.path);
+        let kept: Vec<FileRecord> = earlier.filter(is_kept).cloned().collect();
+        files.extend(kept);
+        files
+    }
+
     /// Writes a keyframe, and notes that it is finished.
     fn finish(&self, keyframe: &Keyframe, made: MadeKeyframe, bench: &Bench) -> Result<(), Fault> {
         let (scene, token) = (&self.planned.name, &keyframe.token);
         let write = |(path, bytes): (TreePath, Vec<u8>)| {
             Ok(self.job.tree.write(&path, &bytes)?.of_keyframe(scene, token))
         };
+        let files = made.files?.into_iter().map(write).collect::<Result<_, Fault>>()?;
         let entry = JournalEntry {
             scene: scene.clone(),
             keyframe: token.clone(),
-            files: made.files?.into_iter().map(write).collect::<Result<_, Fault>>()?,
+            files: self.with_earlier(files, keyframe, bench),
             summary: made.summary,
         };
         bench.journal.lock().expect("no worker panicked").append(&entry)?;

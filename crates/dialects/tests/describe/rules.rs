@@ -5,8 +5,8 @@ use occlabel_labels::NumberArray;
 
 use crate::{Saved, rules_of};
 
-const SHAPE: [usize; 3] = [10, 20, 4];
-const VOXELS: usize = 800;
+const SHAPE: [usize; 3] = [50, 50, 4];
+const VOXELS: usize = 10_000;
 
 /// Road at the bottom, a car on a part of it, all observed and seen.
 fn semantics() -> Vec<u8> {
@@ -42,7 +42,7 @@ fn a_camera_that_sees_what_no_lidar_observed_is_told() {
     lidar[2..5].fill(0);
     let told = file(&semantics(), &lidar, &ONES);
     assert_eq!(rules_of(&told), ["occupied-outside-mask-lidar", "mask-not-subset"]);
-    assert_eq!((told.suspicions[1].count, told.suspicions[1].of), (3, 800));
+    assert_eq!((told.suspicions[1].count, told.suspicions[1].of), (3, 10_000));
     assert_eq!(told.suspicions[0].count, 1);
 }
 
@@ -52,7 +52,7 @@ fn masks_of_other_numbers_are_told_with_their_count() {
     camera[7..12].fill(2);
     let told = file(&semantics(), &ONES, &camera);
     assert_eq!(rules_of(&told), ["unreadable", "mask-values"]);
-    assert_eq!(told.suspicions[1].text, "5 of 800 values of mask_camera are neither 0 nor 1");
+    assert_eq!(told.suspicions[1].text, "5 of 10000 values of mask_camera are neither 0 nor 1");
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn ids_outside_the_table_are_told_and_the_rest_is_described() {
     semantics[3] = 99;
     let told = file(&semantics, &ONES, &ONES);
     assert_eq!(rules_of(&told), ["ids-outside-classes"]);
-    assert_eq!(told.suspicions[0].text, "1 of 800 ids are no class: 99 (1)");
+    assert_eq!(told.suspicions[0].text, "1 of 10000 ids are no class: 99 (1)");
     let states = told.contents.expect("contents").states;
     assert_eq!((states.occupied, states.no_label, states.free), (250, 1, 549));
 }
@@ -87,7 +87,7 @@ fn empty_and_full_grids_are_told() {
 #[test]
 fn what_no_file_of_a_dialect_tells_is_a_note_and_no_suspicion() {
     let semantics: Vec<u8> = semantics().iter().map(|id| if *id == 17 { 16 } else { 10 }).collect();
-    let flow = NumberArray::new(&[10, 20, 4, 2], &[0.0_f32; 2 * VOXELS]);
+    let flow = NumberArray::new(&[50, 50, 4, 2], &[0.0_f32; 2 * VOXELS]);
     let arrays = [("semantics", NumberArray::new(&SHAPE, &semantics)), ("flow", flow)];
     let told = Saved::npz(&arrays).describe();
     assert_eq!(told.dialects, ["openocc-v2", "lightwheelocc"]);
@@ -115,4 +115,13 @@ fn fault_35_a_torn_file_is_one_fault() {
     let fault = Description::of_file(&path, None).unwrap_err();
     assert_eq!(fault.rule, "npz");
     assert!(Description::of_file(&path.with_file_name("absent"), None).is_err());
+}
+
+#[test]
+fn axes_that_changed_places_stretch_the_voxels() {
+    let semantics = NumberArray::new(&[4, 50, 50], &semantics());
+    let mask = NumberArray::new(&[4, 50, 50], &ONES);
+    let arrays = [("semantics", semantics), ("mask_lidar", mask.clone()), ("mask_camera", mask)];
+    let told = Saved::npz(&arrays).describe();
+    assert!(rules_of(&told).contains(&"voxels-stretched"), "{:?}", told.suspicions);
 }
