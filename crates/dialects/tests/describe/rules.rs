@@ -63,7 +63,7 @@ fn ids_outside_the_table_are_told_and_the_rest_is_described() {
     assert_eq!(rules_of(&told), ["ids-outside-classes"]);
     assert_eq!(told.suspicions[0].text, "1 of 10000 ids are no class: 99 (1)");
     let states = told.contents.expect("contents").states;
-    assert_eq!((states.occupied, states.no_label, states.free), (250, 1, 549));
+    assert_eq!((states.occupied, states.no_label, states.free), (2550, 1, 7449));
 }
 
 #[test]
