@@ -13,7 +13,7 @@ use crate::interrupt::Interrupt;
 use crate::label::clock::{StageClock, StageTimes};
 use crate::label::findings::Findings;
 use crate::label::planned_scene::PlannedScene;
-use crate::label::sweep_reader::SweepReader;
+use crate::label::sweep_reader::{Book, SweepReader};
 use crate::label::tally::{EmptyBox, Summary, Tally, VoxelCounts};
 use crate::label::target_dialect::Source;
 use crate::label::targets::{KeyframeFiles, LabelledGrid};
@@ -85,13 +85,7 @@ impl SceneRun<'_> {
         if done.tally.points == 0 {
             findings.warn(self.job.console, &scene.name, &no_points());
         }
-        todo.retain(|keyframe| match book.refusal_of(&scene, keyframe) {
-            Some(fault) => {
-                findings.lose(self.job.console, &scene.name, &fault);
-                false
-            }
-            None => true,
-        });
+        todo.retain(|keyframe| self.is_readable(&scene, keyframe, &book, findings));
         let losses = findings.losses_of(&scene.name);
         let (journal, done) = (Mutex::new(journal), Mutex::new(done));
         let lenses = Lenses::default();
@@ -103,6 +97,21 @@ impl SceneRun<'_> {
         let write = |keyframe: &&Keyframe, made| self.finish(keyframe, made, &bench);
         workers::for_each(&todo, at_once, is_over, make, write)?;
         Ok(bench.done.into_inner().expect("no worker panicked"))
+    }
+
+    /// Whether a keyframe's own sweep could be read; if not, the keyframe is lost.
+    fn is_readable(
+        &self,
+        scene: &Scene,
+        keyframe: &Keyframe,
+        book: &Book,
+        findings: &mut Findings,
+    ) -> bool {
+        let refusal = book.refusal_of(scene, keyframe);
+        if let Some(fault) = &refusal {
+            findings.lose(self.job.console, &scene.name, fault);
+        }
+        refusal.is_none()
     }
 
     /// The keyframes of which an earlier run wrote all that this one would, and what it lost then.
