@@ -30,6 +30,7 @@ pub(crate) const STAGES: &[Stage] = &[
     Stage { name: "cameras-precise", watched: "cameras", run: || cameras("precise") },
     Stage { name: "cameras-occ3d-nuscenes", watched: "cameras", run: || cameras("occ3d-nuscenes") },
     Stage { name: "keyframe", watched: "keyframe", run: keyframe },
+    Stage { name: "ray-scores", watched: "score", run: score },
 ];
 
 fn split() {
@@ -76,4 +77,10 @@ fn cameras(preset: &str) {
 fn keyframe() {
     let prepared = Prepared::new("precise");
     black_box(watched::keyframe(&prepared, &prepared.aggregated()));
+}
+
+fn score() {
+    let prepared = Prepared::new("precise");
+    let labelled = watched::keyframe(&prepared, &prepared.aggregated());
+    black_box(watched::score(&labelled.labels.semantics, &prepared.rules));
 }

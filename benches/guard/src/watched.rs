@@ -1,8 +1,10 @@
 //! What callgrind watches: it counts while one of these runs. Each calls one stage, and nothing else.
 
+use nalgebra::Point3;
 use occlabel_aggregate::{SplitSweep, TrackBox, split_sweep};
 use occlabel_annotate::RelabelSettings;
 use occlabel_core::{AggregatedScene, ClassId, Instant, RayCounts, Sweep, VoxelGrid, VoxelVote};
+use occlabel_evaluate::rays::{RayGrid, RayPair, RaySet, ray_pairs};
 use occlabel_occlusion::{Eye, Lenses, Matter};
 use occlabel_pipeline::{LabelOptions, LabelledKeyframe, Rules, label_keyframe};
 use occlabel_raycast::{Casting, count};
@@ -46,4 +48,11 @@ pub(crate) fn keyframe(
     let (lenses, options) = (Lenses::default(), LabelOptions::labels(1));
     let keyframe = prepared.keyframe();
     label_keyframe(&drive.scene, aggregated, &lenses, keyframe, rules, &options, |_| {})
+}
+
+#[inline(never)]
+pub(crate) fn score(semantics: &VoxelGrid<u8>, rules: &Rules) -> Vec<RayPair> {
+    let (free, lidar) = (rules.taxonomy.free, Point3::new(0.9, 0.0, 1.8));
+    let grid = RayGrid::new(&rules.spec, semantics, free).expect("labels of this grid");
+    ray_pairs(&grid, &grid, &[lidar], &RaySet::published()).expect("an origin that is a place")
 }
