@@ -8,7 +8,7 @@ use crate::exact_sum::ExactSum;
 ///
 /// Terms are 0 or more, and the sum below 2^64: shares, metres and metres per second are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExactMean {
+pub(crate) struct ExactMean {
     total: ExactSum,
     count: u64,
 }
@@ -16,23 +16,23 @@ pub struct ExactMean {
 impl ExactMean {
     /// Adds a term.
     #[inline]
-    pub fn add(&mut self, term: f64) {
+    pub(crate) fn add(&mut self, term: f64) {
         self.total.add(term);
         self.count += 1;
     }
 
     /// How many terms there were.
-    pub fn count(&self) -> u64 {
+    pub(crate) fn count(&self) -> u64 {
         self.count
     }
 
     /// Their sum.
-    pub fn sum(&self) -> f64 {
+    pub(crate) fn sum(&self) -> f64 {
         self.total.value()
     }
 
     /// Their mean; none without terms.
-    pub fn mean(&self) -> Option<f64> {
+    pub(crate) fn mean(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum() / self.count as f64)
     }
 }

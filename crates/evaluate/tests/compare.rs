@@ -12,6 +12,10 @@ fn comparer() -> Comparer {
     Comparer::new(spec(), vec!["car".into(), "road".into()]).unwrap()
 }
 
+fn along_rays() -> Comparer {
+    Comparer::along_rays(spec(), vec!["car".into(), "road".into()]).unwrap()
+}
+
 /// A keyframe of two sets.
 struct Pair {
     semantics: [VoxelGrid<u8>; 2],
@@ -44,7 +48,8 @@ impl Pair {
             mask_lidar: Some(&self.observed[at]),
             ..ComparedLabels::of(&self.semantics[at])
         };
-        comparer().compare(&labels(0), &labels(1), origins).unwrap()
+        let comparer = if origins.is_empty() { comparer() } else { along_rays() };
+        comparer.compare(&labels(0), &labels(1), origins).unwrap()
     }
 
     fn comparison(&self) -> Comparison {

@@ -32,7 +32,12 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Outcome, Stop
         console.info("no RayIoU: the manifest of the first set tells no poses; see --ray-origins");
     }
     let classes = pairs.a.classes().names();
-    let comparer = Comparer::new(pairs.a.spec().clone(), classes).map_err(Stop::usage)?;
+    let spec = pairs.a.spec().clone();
+    let comparer = match origins {
+        Some(_) => Comparer::along_rays(spec, classes),
+        None => Comparer::new(spec, classes),
+    };
+    let comparer = comparer.map_err(Stop::usage)?;
     let found = compare(&pairs, &comparer, origins.as_ref(), args.worst)?;
     verdict::tell(args, &pairs, &found, &comparer, console)
 }

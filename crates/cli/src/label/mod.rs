@@ -126,6 +126,7 @@ fn write_manifests(
     entries: &[JournalEntry],
     begun: &Begun,
 ) -> Result<Manifest, Fault> {
+    let mut manifests = Vec::new();
     let mut of_all = Vec::new();
     for target in job.targets.all() {
         let folder = target.1.folder.as_deref();
@@ -133,15 +134,16 @@ fn write_manifests(
         if let Some(stem) = target.1.list_stem() {
             let list = records::annotations(plan, entries);
             let file = begun.write_of_all(folder, stem, &list)?;
-            manifest.files.extend(target.1.own_record(&file));
+            manifest.files.extend(target.1.own_record(&file).filter(|_| folder.is_some()));
             of_all.push(file);
         }
         manifest.files.sort();
         if folder.is_some() {
             of_all.push(begun.write_of_all(folder, "manifest", &manifest)?);
         }
+        manifests.push(manifest);
     }
-    let mut main = records::manifest(job, plan, record, entries, job.targets.main());
+    let mut main = manifests.swap_remove(0);
     main.files.extend(of_all);
     main.files.extend(earlier_manifests(job, &main)?);
     main.files.sort();

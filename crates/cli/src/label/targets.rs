@@ -134,11 +134,6 @@ impl Targets {
         self.grids.iter().flat_map(|grid| grid.targets.iter().map(move |target| (grid, target)))
     }
 
-    /// The set that is asked for, with its grid.
-    pub(crate) fn main(&self) -> (&LabelledGrid, &Target) {
-        (&self.grids[0], &self.grids[0].targets[0])
-    }
-
     /// The grid of most voxels: what memory is planned by.
     pub(crate) fn largest(&self) -> &GridSpec {
         let specs = self.grids.iter().map(|grid| &grid.rules.spec);

@@ -8,7 +8,6 @@ use super::difference::Difference;
 use super::mask_agreement::MaskCounts;
 use super::state_changes::StateCounts;
 use crate::RINGS_M;
-use crate::rays::{RayGrid, RaySet, RayTally, THRESHOLDS_M, ray_pairs};
 use crate::scores::{Metrics, ScoredLabels, ScoredPair, Scorer, ScoringRules};
 
 /// The labels of one keyframe, with canonical ids.
@@ -37,26 +36,37 @@ impl<'a> ComparedLabels<'a> {
 #[derive(Clone, Debug)]
 pub struct Comparer {
     scorer: Scorer,
-    rays: RaySet,
 }
 
 impl Comparer {
-    /// A comparer of labels in a grid, of these classes.
+    /// A comparer of labels in a grid, of these classes, voxel by voxel.
     ///
     /// # Errors
     /// If there are more than 254 classes.
     pub fn new(spec: GridSpec, classes: Vec<String>) -> Result<Self, Fault> {
+        Self::of(spec, classes, false)
+    }
+
+    /// The same, and along rays: RayIoU.
+    ///
+    /// # Errors
+    /// As for [`Comparer::new`].
+    pub fn along_rays(spec: GridSpec, classes: Vec<String>) -> Result<Self, Fault> {
+        Self::of(spec, classes, true)
+    }
+
+    fn of(spec: GridSpec, classes: Vec<String>, rays: bool) -> Result<Self, Fault> {
         let rules = ScoringRules { ring_m: RINGS_M.to_vec(), ..ScoringRules::new(spec, classes) };
-        let metrics = Metrics { semantic: true, ..Metrics::default() };
-        Ok(Self { scorer: Scorer::new(rules, metrics)?, rays: RaySet::published() })
+        let metrics = Metrics { semantic: true, rays, ..Metrics::default() };
+        Ok(Self { scorer: Scorer::new(rules, metrics)? })
     }
 
     pub(crate) fn rules(&self) -> &ScoringRules {
         self.scorer.rules()
     }
 
-    /// Compares a keyframe, on the thread that asks. Rays are cast from the origins, in the grid
-    /// frame, metres; without any, none are.
+    /// Compares a keyframe, on the thread that asks. Rays, if any are asked for, begin at the origins, in
+    /// the grid frame, metres.
     ///
     /// # Errors
     /// If a grid has not the comparer's shape, or an id is of no class.
@@ -70,7 +80,7 @@ impl Comparer {
             truth: ScoredLabels::of(a.semantics),
             prediction: ScoredLabels::of(b.semantics),
             mask: None,
-            origins: &[],
+            origins,
         };
         let scores = self.scorer.score(&pair)?;
         let (arrays, differing) = ArrayDifferences::of(a, b);
@@ -83,24 +93,6 @@ impl Comparer {
             mask_lidar: masks([a.mask_lidar, b.mask_lidar]),
             mask_camera: masks([a.mask_camera, b.mask_camera]),
             states: StateCounts::of(a, b, self.rules().free()),
-            rays: self.cast(a, b, origins)?,
         })
-    }
-
-    fn cast(
-        &self,
-        a: &ComparedLabels,
-        b: &ComparedLabels,
-        origins: &[Point3<f64>],
-    ) -> Result<Option<RayTally>, Fault> {
-        if origins.is_empty() {
-            return Ok(None);
-        }
-        let (spec, free) = (&self.rules().spec, self.rules().free());
-        let grid = |semantics| RayGrid::new(spec, semantics, free);
-        let pairs = ray_pairs(&grid(a.semantics)?, &grid(b.semantics)?, origins, &self.rays)?;
-        let mut tally = RayTally::new(self.rules().classes.len(), &THRESHOLDS_M);
-        tally.count(&pairs, a.semantics, b.semantics);
-        Ok(Some(tally))
     }
 }

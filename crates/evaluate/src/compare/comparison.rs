@@ -6,7 +6,7 @@ use super::arrays::ArrayDifferences;
 use super::difference::Difference;
 use super::mask_agreement::{MaskAgreement, MaskCounts};
 use super::state_changes::{StateChanges, StateCounts};
-use crate::rays::{RayIou, RayTally};
+use crate::rays::RayIou;
 use crate::scores::{RingScores, ScoringRules, SemanticScores};
 
 /// How two label sets differ.
@@ -50,7 +50,7 @@ impl Comparison {
             mask_lidar: difference.mask_lidar.as_ref().map(MaskCounts::agreement),
             mask_camera: difference.mask_camera.as_ref().map(MaskCounts::agreement),
             states: difference.states.as_ref().map(StateCounts::changes),
-            rays: difference.rays.as_ref().map(RayTally::ray_iou),
+            rays: scores.rays.map(|rays| rays.ray_iou),
         }
     }
 }

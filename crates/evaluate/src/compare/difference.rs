@@ -7,7 +7,6 @@ use super::comparer::Comparer;
 use super::comparison::Comparison;
 use super::mask_agreement::MaskCounts;
 use super::state_changes::StateCounts;
-use crate::rays::RayTally;
 use crate::scores::ScoreTally;
 
 /// What was counted of some keyframes of two label sets. Differences add up in any order.
@@ -23,7 +22,6 @@ pub struct Difference {
     pub(super) mask_lidar: Option<MaskCounts>,
     pub(super) mask_camera: Option<MaskCounts>,
     pub(super) states: Option<StateCounts>,
-    pub(super) rays: Option<RayTally>,
 }
 
 impl Difference {
@@ -55,10 +53,6 @@ impl AddAssign<&Difference> for Difference {
         add(&mut self.mask_lidar, &other.mask_lidar);
         add(&mut self.mask_camera, &other.mask_camera);
         add(&mut self.states, &other.states);
-        match (&mut self.rays, &other.rays) {
-            (Some(rays), Some(more)) => rays.add(more),
-            (rays, more) => *rays = rays.take().or_else(|| more.clone()),
-        }
     }
 }
 

@@ -52,7 +52,6 @@ mod table;
 mod tally;
 mod velocity;
 
-pub use crate::exact_mean::ExactMean;
 pub use attributes::SceneAttributes;
 pub use breakdown::Breakdown;
 pub use completion::CompletionScores;
