@@ -64,8 +64,8 @@ fn draw(labels: &Path, pictures: &Path, console: &Console) -> Result<(), Stop> {
     let painted = Painted {
         spec: &spec,
         semantics: &arrays.semantics,
-        mask_lidar: &arrays.mask_lidar,
-        mask_camera: &arrays.mask_camera,
+        mask_lidar: Some(&arrays.mask_lidar),
+        mask_camera: Some(&arrays.mask_camera),
         free: u8::try_from(manifest.free).unwrap_or(u8::MAX),
         palette: &Palette::of(&names),
     };

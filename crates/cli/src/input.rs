@@ -52,8 +52,13 @@ pub(crate) struct Stead {
 
 /// The same with what stands in where the command line says nothing.
 pub(crate) fn open_with(log: &LogArgs, args: &ConfigArgs, stead: &Stead) -> Result<Opened, Stop> {
-    let (preset, mut config) = read_config(args, stead.grid.as_ref()).map_err(Stop::usage)?;
+    let (preset, config) = read_config(args, stead.grid.as_ref()).map_err(Stop::usage)?;
     check_flags(log, args).map_err(Stop::usage)?;
+    Ok(Opened { preset, ..open_by(log, config, stead)? })
+}
+
+/// Opens the log by a configuration, which is resolved against it.
+pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Result<Opened, Stop> {
     check_input(&log.input).map_err(Stop::usage)?;
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
     let names_lidar = config.keyframes.reference_lidar != "auto";
@@ -70,7 +75,7 @@ pub(crate) fn open_with(log: &LogArgs, args: &ConfigArgs, stead: &Stead) -> Resu
     };
     let mcap = config.reader.mcap.clone();
     let source = open_format(log, options, mcap).map_err(stop)?;
-    Ok(Opened { source, preset, config, taxonomy_hash, rules, names_lidar })
+    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, names_lidar })
 }
 
 /// Opens a log by its format.

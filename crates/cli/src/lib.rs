@@ -29,12 +29,15 @@ mod interrupt;
 mod label;
 mod label_pairs;
 mod lacks;
+mod logged_scene;
 mod presets;
 mod progress;
 mod quality;
 mod ray_origins;
+mod shown_set;
 mod simulate;
 mod threads;
+mod view;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -103,6 +106,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Compare(args) => compare::run(args, console),
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
+        Command::View(args) => view::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),

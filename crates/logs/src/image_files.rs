@@ -1,4 +1,4 @@
-//! Images: never needed, so only their headers are read.
+//! Images: no label needs them, so `check` reads only their headers, and `view` their bytes.
 
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
@@ -7,7 +7,7 @@ use std::path::Path;
 use imagesize::ImageError;
 use occlabel_core::Fault;
 
-use crate::files::{name_defect, open_file};
+use crate::files::{name_defect, open_file, read_file};
 
 /// The file of an image, and what a table says about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,6 +34,22 @@ pub fn check_images(root: &Path, images: &[ImageFile]) -> Vec<Fault> {
         odd.push(Fault::new("image-absent", &first.file, "image files", found));
     }
     odd
+}
+
+/// The bytes of an image file below the log's root; `None` if it is absent.
+///
+/// # Errors
+/// If its name leads out of the root, or it cannot be read.
+pub(crate) fn read_image_file(root: &Path, file: &str) -> Result<Option<Vec<u8>>, Fault> {
+    if let Some(defect) = name_defect(file) {
+        let found = format!("`{file}`, {defect}");
+        return Err(Fault::new("file-name", file, "a path below the log's root", found));
+    }
+    match read_file(root, file) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(fault) if fault.rule == "missing-file" => Ok(None),
+        Err(fault) => Err(fault),
+    }
 }
 
 impl ImageFile {

@@ -1,6 +1,6 @@
 //! What a reader of any log format gives.
 
-use occlabel_core::{Fault, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_core::{Exposure, Fault, PointCloud, PointLabel, Scene, SweepHeader};
 
 use crate::{ImageFile, UnknownLabels};
 
@@ -27,6 +27,15 @@ pub trait SceneSource: Sync {
     /// The files of a scene's images, where a format has any that nothing else reads.
     fn image_files(&self, _scene: &str) -> Vec<ImageFile> {
         Vec::new()
+    }
+
+    /// The bytes of an exposure's image, JPEG or PNG as the log has it; `None` where the log does not
+    /// have it.
+    ///
+    /// # Errors
+    /// If it is there and cannot be read.
+    fn read_image(&self, _scene: &Scene, _exposure: &Exposure) -> Result<Option<Vec<u8>>, Fault> {
+        Ok(None)
     }
 
     /// Everything of a scene but its points.

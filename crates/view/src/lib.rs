@@ -1,12 +1,13 @@
-//! Pictures of labels, drawn without a display.
+//! Labels as one can look at them.
 //!
 //! A label that nobody looked at is not trusted, and the machine that labels often has no screen, no
-//! graphics card and no fonts. So the pictures are drawn by a few hundred lines on the processor
-//! alone, and their letters are drawn here as well (`font.rs`). A picture is a function of the labels
-//! and a few settings: the same bytes on any number of threads and any machine.
+//! graphics card and no fonts. So the pictures are drawn on the processor alone, and their letters are
+//! drawn here as well (`picture/font.rs`). All that is made here is a function of the labels and a few
+//! settings: the same bytes on any number of threads and any machine.
 //!
-//! What a voxel looks like is [`Painted`]'s affair; where it stands in the picture is that of
-//! [`birds_eye`] and [`perspective`]. Whatever else is to be drawn needs a new painter only.
+//! Every way to show a scene takes a [`ShownScene`] and its [`ShownKeyframe`]s, whatever dialect they
+//! were read from. In pictures, what a voxel looks like is [`Painted`]'s affair; where it stands is
+//! that of [`birds_eye`], [`perspective`] and their siblings.
 //!
 //! ```
 //! use occlabel_core::{GridSpec, Palette, VoxelGrid};
@@ -20,8 +21,8 @@
 //! let labels = Painted {
 //!     spec: &spec,
 //!     semantics: &semantics,
-//!     mask_lidar: &seen,
-//!     mask_camera: &seen,
+//!     mask_lidar: Some(&seen),
+//!     mask_camera: Some(&seen),
 //!     free: 17,
 //!     palette: &palette,
 //! };
@@ -31,23 +32,8 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
-mod birds_eye;
-mod canvas;
-mod cast;
-mod color;
-mod column;
-mod font;
-mod legend;
-mod lens;
-mod marks;
-mod orbit;
-mod painted;
-mod perspective;
-mod png;
-mod shade;
+mod picture;
+mod shown;
 
-pub use birds_eye::{BirdsEye, birds_eye};
-pub use orbit::Orbit;
-pub use painted::Painted;
-pub use perspective::perspective;
-pub use png::png;
+pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
+pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

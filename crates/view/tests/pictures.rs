@@ -70,8 +70,8 @@ impl Labels {
         Painted {
             spec: &self.spec,
             semantics: &self.semantics,
-            mask_lidar: &self.mask_lidar,
-            mask_camera: &self.mask_camera,
+            mask_lidar: Some(&self.mask_lidar),
+            mask_camera: Some(&self.mask_camera),
             free: FREE,
             palette: &self.palette,
         }

@@ -80,3 +80,10 @@ pub(crate) struct ConfigArgs {
     #[arg(long = "set", value_name = "table.key=VALUE")]
     pub(crate) settings: Vec<String>,
 }
+
+impl ConfigArgs {
+    /// Whether nothing was said.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.preset.is_none() && self.config.is_none() && self.settings.is_empty()
+    }
+}

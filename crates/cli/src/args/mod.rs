@@ -8,6 +8,7 @@ mod label;
 mod log;
 mod quality;
 mod simulate;
+mod view;
 
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use quality::QualityArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
+pub(crate) use view::{PictureArg, ViewArgs};
 
 /// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
 /// drives.
@@ -67,6 +69,8 @@ pub(crate) enum Command {
     Convert(Box<ConvertArgs>),
     /// Tell which dialect label files look like, what they hold, and what is odd about them.
     Describe(DescribeArgs),
+    /// Show labels: as a picture, for Foxglove and Rerun, as a mesh, or as a page.
+    View(Box<ViewArgs>),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.

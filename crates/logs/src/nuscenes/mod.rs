@@ -30,8 +30,9 @@ mod version;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
+use occlabel_core::{Exposure, Fault, Scene, SweepHeader, reference_lidar};
 
+use crate::image_files::read_image_file;
 use crate::{ImageFile, PointColumns, ReadOptions, ReaderDefaults, SceneSource, SweepPoints};
 
 #[cfg(any(test, fuzzing))]
@@ -138,6 +139,13 @@ impl SceneSource for NuScenesLog {
     fn image_files(&self, scene: &str) -> Vec<ImageFile> {
         let rows = self.tables.scene(scene);
         rows.map_or(Vec::new(), |rows| cameras::image_files(&self.tables, rows))
+    }
+
+    fn read_image(&self, _scene: &Scene, exposure: &Exposure) -> Result<Option<Vec<u8>>, Fault> {
+        match &exposure.image {
+            Some(file) => read_image_file(&self.root, file),
+            None => Ok(None),
+        }
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {

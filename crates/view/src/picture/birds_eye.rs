@@ -10,12 +10,12 @@ use image::{Rgb, RgbImage, imageops};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use crate::canvas::At;
-use crate::color::{FREE, PAPER, UNOBSERVED, lit};
-use crate::column::{Column, columns};
-use crate::legend::Legend;
-use crate::marks;
-use crate::painted::{Painted, hidden};
+use crate::picture::canvas::At;
+use crate::picture::color::{FREE, PAPER, UNOBSERVED, lit};
+use crate::picture::column::{Column, columns};
+use crate::picture::legend::Legend;
+use crate::picture::marks;
+use crate::picture::painted::{Painted, hidden};
 
 const MARGIN_PX: u32 = 28;
 const FOOT_PX: u32 = 46;

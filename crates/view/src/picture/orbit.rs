@@ -3,8 +3,8 @@
 use nalgebra::{Point3, Vector3};
 use occlabel_core::GridSpec;
 
-use crate::lens::{Lens, TAN_HALF_VIEW};
-use crate::perspective::scene_width_px;
+use crate::picture::lens::{Lens, TAN_HALF_VIEW};
+use crate::picture::perspective::scene_width_px;
 
 /// A camera on a sphere around a target, in the grid frame.
 ///

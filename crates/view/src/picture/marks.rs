@@ -4,9 +4,9 @@ use image::RgbImage;
 use nalgebra::Vector2;
 use occlabel_core::GridSpec;
 
-use crate::canvas::{At, Stroke, line, paint, polygon};
-use crate::color::{FAINT_INK, INK, PAPER};
-use crate::font::{CAPITAL_ROWS, width_px, write};
+use crate::picture::canvas::{At, Stroke, line, paint, polygon};
+use crate::picture::color::{FAINT_INK, INK, PAPER};
+use crate::picture::font::{CAPITAL_ROWS, width_px, write};
 
 const STEP_PX: f64 = 1.5;
 const LINE_PX: f64 = 1.8;

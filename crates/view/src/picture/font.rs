@@ -11,7 +11,7 @@
 
 use image::{Rgb, RgbImage};
 
-use crate::canvas::{At, Stroke, paint};
+use crate::picture::canvas::{At, Stroke, paint};
 
 /// Rows from a capital's top to the line that letters stand on.
 pub(crate) const CAPITAL_ROWS: f64 = 6.0;

@@ -5,15 +5,15 @@ use nalgebra::{Point3, Vector3};
 use occlabel_core::{GridSpec, VoxelIndex};
 use rayon::prelude::*;
 
-use crate::canvas::At;
-use crate::cast::{Hit, Sight, cast};
-use crate::color::{FLOOR, PAPER, SKY, byte, mix};
-use crate::legend::Legend;
-use crate::lens::Lens;
-use crate::marks;
-use crate::orbit::Orbit;
-use crate::painted::{Painted, hidden};
-use crate::shade::{face_light, joint_light, sky_light};
+use crate::picture::canvas::At;
+use crate::picture::cast::{Hit, Sight, cast};
+use crate::picture::color::{FLOOR, PAPER, SKY, byte, mix};
+use crate::picture::legend::Legend;
+use crate::picture::lens::Lens;
+use crate::picture::marks;
+use crate::picture::orbit::Orbit;
+use crate::picture::painted::{Painted, hidden};
+use crate::picture::shade::{face_light, joint_light, sky_light};
 
 /// The strip that the legend takes at the right of a picture.
 const LEGEND_PX: u32 = 270;
@@ -53,7 +53,7 @@ fn legend(labels: &Painted, cameras: bool) -> Legend {
 
 fn color(labels: &Painted, flat: usize, cameras: bool) -> Rgb<u8> {
     let color = labels.class(flat).map_or(FLOOR, |class| labels.color(class));
-    if cameras && labels.mask_camera.values()[flat] == 0 { hidden(color) } else { color }
+    if cameras && labels.unseen(flat) { hidden(color) } else { color }
 }
 
 fn with_legend(scene: RgbImage, legend: &Legend, orbit: &Orbit) -> RgbImage {

@@ -2,10 +2,10 @@
 
 use image::{Rgb, RgbImage};
 
-use crate::canvas::{At, polygon};
-use crate::color::INK;
-use crate::font::{CAPITAL_ROWS, width_px, write};
-use crate::painted::{Painted, hidden};
+use crate::picture::canvas::{At, polygon};
+use crate::picture::color::INK;
+use crate::picture::font::{CAPITAL_ROWS, width_px, write};
+use crate::picture::painted::{Painted, hidden};
 
 const STEP_PX: f64 = 1.75;
 const ROW_PX: f64 = 27.0;

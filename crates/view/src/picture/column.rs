@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::painted::Painted;
+use crate::picture::painted::Painted;
 
 /// A column as seen from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub(crate) fn columns(labels: &Painted) -> Vec<Column> {
 }
 
 fn look_down(labels: &Painted, voxels: std::ops::Range<usize>, cameras: bool) -> Column {
-    let unseen = |flat: usize| cameras && labels.mask_camera.values()[flat] == 0;
+    let unseen = |flat: usize| cameras && labels.unseen(flat);
     let bottom = voxels.start;
     let top = voxels.clone().rev().find_map(|flat| Some((flat, labels.class(flat)?)));
     match top {
@@ -63,8 +63,8 @@ mod tests {
         let labels = Painted {
             spec: &spec,
             semantics: &grid(semantics, FREE),
-            mask_lidar: &grid(lidar, 0),
-            mask_camera: &grid(camera, u8::from(cameras)),
+            mask_lidar: Some(&grid(lidar, 0)),
+            mask_camera: Some(&grid(camera, u8::from(cameras))),
             free: FREE,
             palette: &Palette::of(&["a"]),
         };

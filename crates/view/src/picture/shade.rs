@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::cast::Hit;
+use crate::picture::cast::Hit;
 
 /// What the light of a face is by the axis it lies across: the two kinds of walls differ, so that
 /// corners show.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::canvas::At;
+use crate::picture::canvas::At;
 
 /// Tangent of half the view's height: about 35 degrees in all.
 pub(crate) const TAN_HALF_VIEW: f64 = 0.32;

@@ -12,7 +12,7 @@
 use image::{Rgb, RgbImage};
 use nalgebra::Point2;
 
-use crate::color::mix;
+use crate::picture::color::mix;
 
 /// A point of the picture, pixels.
 pub(crate) type At = Point2<f64>;

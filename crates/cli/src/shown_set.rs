@@ -1,0 +1,141 @@
+//! A folder of labels, as it is shown.
+
+use std::path::{Path, PathBuf};
+
+use occlabel_core::{Fault, Palette, Pose};
+use occlabel_dialects::{KeyframeKey, LabelSet, Wanted};
+use occlabel_labels::{Manifest, PoseRecord, SceneRecord, read_evidence};
+use occlabel_view::{ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};
+
+/// Labels in any dialect, with what their manifest tells, if they have one.
+pub(crate) struct ShownSet {
+    pub(crate) set: LabelSet,
+    pub(crate) manifest: Option<Manifest>,
+    folder: PathBuf,
+}
+
+impl ShownSet {
+    /// Opens a folder, in the dialect that it is said to be in or that it tells.
+    ///
+    /// # Errors
+    /// If there are no labels, or of no one dialect.
+    pub(crate) fn open(folder: &Path, dialect: Option<&str>) -> Result<Self, Fault> {
+        let set = LabelSet::open(folder, dialect)?;
+        Ok(Self { set, manifest: Manifest::load_tree(folder)?, folder: folder.to_owned() })
+    }
+
+    /// The scenes by name.
+    pub(crate) fn scene_names(&self) -> Vec<&str> {
+        let mut names: Vec<_> = self.set.keyframes().iter().map(|key| key.scene.as_str()).collect();
+        names.dedup();
+        names
+    }
+
+    /// A scene by its name, or the first one.
+    ///
+    /// # Errors
+    /// If there is none of this name.
+    pub(crate) fn scene(&self, name: Option<&str>) -> Result<ShownScene, Fault> {
+        let names = self.scene_names();
+        let name = match name {
+            None => names.first().copied().unwrap_or_default(),
+            Some(name) if names.contains(&name) => name,
+            Some(name) => return Err(self.unknown("scene", &names, name)),
+        };
+        let record = self.record(name);
+        Ok(ShownScene {
+            name: name.to_owned(),
+            frame: self.set.frame().to_owned(),
+            palette: Palette::of(&self.set.classes().names()),
+            free: self.set.classes().free_index(),
+            cameras: record.map_or_else(Vec::new, |record| record.cameras.clone()),
+            tracks: record.map_or_else(Vec::new, tracks),
+        })
+    }
+
+    /// The keyframes of a scene in order of time, as far as the manifest tells it, or of these tokens.
+    ///
+    /// # Errors
+    /// If the scene does not have one of them.
+    pub(crate) fn keyframes(
+        &self,
+        scene: &str,
+        tokens: &[String],
+    ) -> Result<Vec<KeyframeKey>, Fault> {
+        let of_scene = self.set.keyframes().iter().filter(|key| key.scene == scene);
+        let mut keys: Vec<_> = of_scene.cloned().collect();
+        keys.sort_by_key(|key| self.pose(key).map(|pose| pose.time_ns));
+        let has = |token: &&String| keys.iter().any(|key| &key.token == *token);
+        if let Some(absent) = tokens.iter().find(|token| !has(token)) {
+            let names: Vec<_> = keys.iter().map(|key| key.token.as_str()).collect();
+            return Err(self.unknown("keyframe", &names, absent));
+        }
+        keys.retain(|key| tokens.is_empty() || tokens.contains(&key.token));
+        Ok(keys)
+    }
+
+    /// All that the files tell of a keyframe.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or holds what the dialect does not know.
+    pub(crate) fn read(&self, key: &KeyframeKey) -> Result<ShownKeyframe, Fault> {
+        let wanted = Wanted { instances: true, flow: true, extras: false };
+        let labels = self.set.read_with(key, &wanted)?;
+        let pose = self.pose(key);
+        Ok(ShownKeyframe {
+            token: key.token.clone(),
+            time: pose.map(PoseRecord::time),
+            world_from_grid: pose.map(|pose| self.world_from_grid(pose)),
+            evidence: self.evidence(key)?,
+            spec: labels.spec,
+            semantics: labels.semantics,
+            mask_lidar: labels.mask_lidar,
+            mask_camera: labels.mask_camera,
+            instances: labels.instances,
+            flow: labels.flow,
+        })
+    }
+
+    fn evidence(&self, key: &KeyframeKey) -> Result<Option<ShownEvidence>, Fault> {
+        if !self.set.has_evidence(key) {
+            return Ok(None);
+        }
+        let place = self.set.place(key, "").with_file_name("evidence.npz");
+        let read = read_evidence(&place, self.set.spec())?;
+        let (hits, crossings, camera_bits) = (read.hits, read.crossings, read.camera_bits);
+        Ok(Some(ShownEvidence { hits, crossings, camera_bits }))
+    }
+
+    fn record(&self, scene: &str) -> Option<&SceneRecord> {
+        self.manifest.as_ref()?.scenes.get(scene)
+    }
+
+    fn pose(&self, key: &KeyframeKey) -> Option<&PoseRecord> {
+        self.record(&key.scene)?.poses.iter().find(|pose| pose.token == key.token)
+    }
+
+    fn world_from_grid(&self, pose: &PoseRecord) -> Pose {
+        let world_from_ego = Pose::from(&pose.world_from_ego);
+        match self.set.frame() {
+            "lidar" => world_from_ego * Pose::from(&pose.ego_from_lidar),
+            _ => world_from_ego,
+        }
+    }
+
+    fn unknown(&self, what: &'static str, names: &[&str], found: &str) -> Fault {
+        let some = names.iter().take(5).copied().collect::<Vec<_>>().join(", ");
+        let rest =
+            if names.len() > 5 { format!(", … ({} in all)", names.len()) } else { "".into() };
+        let place = self.folder.display().to_string();
+        Fault::new(what, place, format!("a {what} of {some}{rest}"), format!("`{found}`"))
+    }
+}
+
+fn tracks(record: &SceneRecord) -> Vec<ShownTrack> {
+    let shown = |track: &occlabel_labels::TrackRecord| ShownTrack {
+        index: track.index,
+        id: track.id.clone(),
+        category: track.category.clone(),
+    };
+    record.tracks.iter().map(shown).collect()
+}
