@@ -51,6 +51,7 @@ mod run;
 mod run_files;
 mod shards;
 mod tree;
+mod verify;
 
 pub use atomic::{create_dir, write_file};
 pub use files::{FileRecord, hash_files};
@@ -70,3 +71,4 @@ pub use read::{LabelArrays, read_evidence, read_labels};
 pub use run::{Begun, RESUME_DIFFERS, Resume, RunRecord, begin};
 pub use run_files::RunFiles;
 pub use tree::{LabelTree, TreePath};
+pub use verify::{unlisted_files, verify_file, verify_manifest};

@@ -80,6 +80,19 @@ impl RunFiles {
     }
 }
 
+/// Whether a path of a tree is that of a file which a run, or a shard of one, keeps for itself.
+pub(crate) fn is_of_run(path: &str) -> bool {
+    const OF_WHOLE: [&str; 5] =
+        ["manifest.json", "report.json", "run.json", "journal.jsonl", ".run.lock"];
+    let is_shard = |part: &&str| {
+        let numbers = part.split_once("-of-");
+        numbers.is_some_and(|(i, n)| i.parse::<usize>().is_ok() && n.parse::<usize>().is_ok())
+    };
+    let parts: Vec<&str> = path.split('.').filter(|part| !is_shard(part)).collect();
+    let is_lock = path.starts_with("gts/") && path.ends_with("/.lock");
+    is_lock || OF_WHOLE.contains(&parts.join(".").as_str())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
