@@ -37,6 +37,7 @@ mod ray_origins;
 mod shown_set;
 mod simulate;
 mod threads;
+mod verify;
 mod view;
 
 use std::ffi::OsString;
@@ -107,6 +108,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
         Command::View(args) => view::run(args, console),
+        Command::Verify(args) => verify::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),

@@ -190,7 +190,8 @@ impl LabelSet {
         pattern.from(self.start).place(&self.root, &filling)
     }
 
-    fn evidence(&self, key: &KeyframeKey) -> PathBuf {
+    /// Where the evidence of a keyframe stands, if it is there ([`LabelSet::has_evidence`]).
+    pub fn evidence(&self, key: &KeyframeKey) -> PathBuf {
         self.place(key, "").with_file_name("evidence.npz")
     }
 

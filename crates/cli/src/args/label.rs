@@ -40,6 +40,10 @@ pub(crate) struct LabelArgs {
     /// What to do with the keyframes that an earlier run finished.
     #[arg(long, value_enum, default_value_t = ResumeArg::IfSame)]
     pub(crate) resume: ResumeArg,
+    /// Label these keyframes again although an earlier run finished them: SCENE/TOKEN a line, as
+    /// `verify --redo-list` writes them.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) redo: Option<PathBuf>,
     /// What to do with a record, sweep, keyframe or scene that cannot be used.
     #[arg(long, value_enum, default_value_t = OnError::Fail)]
     pub(crate) on_error: OnError,

@@ -8,6 +8,7 @@ mod label;
 mod log;
 mod quality;
 mod simulate;
+mod verify;
 mod view;
 
 use std::path::PathBuf;
@@ -22,6 +23,7 @@ pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use quality::QualityArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
+pub(crate) use verify::VerifyArgs;
 pub(crate) use view::{PictureArg, ViewArgs};
 
 /// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
@@ -71,6 +73,8 @@ pub(crate) enum Command {
     Describe(DescribeArgs),
     /// Show labels: as a picture, for Foxglove and Rerun, as a mesh, or as a page.
     View(Box<ViewArgs>),
+    /// Check a label tree against its manifest, every bit of it.
+    Verify(VerifyArgs),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.

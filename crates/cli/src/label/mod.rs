@@ -6,6 +6,7 @@ mod plan;
 mod planned_scene;
 mod read_ahead;
 mod records;
+mod redo;
 mod report;
 mod scene_run;
 mod sweep_reader;
@@ -31,6 +32,7 @@ use crate::interrupt::Interrupt;
 use crate::label::findings::Findings;
 use crate::label::plan::Plan;
 use crate::label::read_ahead::while_reading;
+use crate::label::redo::Redo;
 use crate::label::report::{EarlierReport, Report};
 use crate::label::scene_run::{Finished, SceneRun};
 use crate::label::targets::Targets;
@@ -65,22 +67,25 @@ pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> 
     let job = Job { args, opened: &opened, targets: &targets, console, tree, threads };
     let mut findings = Findings::default();
     let plan = Plan::make(&job, &mut findings)?;
+    let redo = redo::read(args.redo.as_deref(), &plan).map_err(Stop::usage)?;
     if args.dry_run {
         plan.print(console);
         return Ok(findings.outcome());
     }
-    label_scenes(&job, &plan, findings, &interrupt)
+    label_scenes(&job, &plan, &redo, findings, &interrupt)
 }
 
 fn label_scenes(
     job: &Job,
     plan: &Plan,
+    redo: &Redo,
     mut findings: Findings,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Stop> {
     let record = records::run_record(job, plan)?;
     tell_notes(job);
-    let (mut begun, finished) = begin_run(job, &record, &mut findings)?;
+    let (mut begun, mut finished) = begin_run(job, &record, &mut findings)?;
+    finished.retain(|keyframe, _| !redo.contains(keyframe));
     let progress =
         Progress::new(job.args.progress, job.console, plan.scenes.len(), plan.keyframes());
     let mut report = Report::new();
