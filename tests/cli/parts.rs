@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use crate::labelled::{labelled, strings};
 use crate::support::{
-    Ended, Label, SCENE, TestLog, gts_files, leftovers, manifest, nano_spec, text, tree_hash,
+    Ended, Label, SCENE, TestLog, files_under, gts_files, leftovers, manifest, nano_spec, occlabel,
+    text, tree_hash,
 };
 
 #[test]
@@ -93,6 +94,54 @@ fn shards_share_the_scenes_and_one_tree() {
     assert!(gts_files(&whole) == gts_files(&shared), "shards write other bytes");
     assert!(!shared.join("manifest.json").exists());
     assert_eq!(leftovers(&shared), [""; 0]);
+}
+
+#[test]
+fn merged_shards_are_the_tree_of_an_undivided_run() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(3));
+    let sets = ["--also", "1.6,occ3d-nuscenes", "--evidence"];
+    let (whole, shared) = (log.beside("whole"), log.beside("shared"));
+    let label = |output| Label::new(&log.root(), output).small().with(&sets);
+    label(&whole).run().exits(0);
+    for shard in ["1/3", "0/3", "2/3"] {
+        merge(&shared).exits(2).tells(&["manifest"]);
+        label(&shared).with(&["--shard", shard]).run().exits(0);
+    }
+    merge(&shared).exits(0);
+    assert_eq!(tree_hash(&whole), tree_hash(&shared));
+    assert!(gts_files(&whole) == gts_files(&shared));
+    occlabel(&["verify", text(&shared)]).exits(0);
+    let names = |tree: &std::path::Path| files_under(tree).into_keys().collect::<Vec<_>>();
+    assert_eq!(names(&whole), names(&shared), "the shards' own files are gone");
+    let before = files_under(&shared);
+    merge(&shared).exits(0);
+    label(&shared).run().exits(0);
+    assert_eq!(tree_hash(&whole), tree_hash(&shared), "an undivided run finds all of it done");
+    assert_eq!(before.len(), files_under(&shared).len());
+}
+
+#[test]
+fn a_merge_that_was_interrupted_is_ended_by_the_same_command() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let shared = log.beside("shared");
+    for shard in ["0/2", "1/2"] {
+        let label = Label::new(&log.root(), &shared).small().with(&["--shard", shard]);
+        label.run().exits(0);
+    }
+    let second = fs::read(shared.join("manifest.1-of-2.json")).expect("a shard's manifest");
+    merge(&shared).exits(0);
+    let before = files_under(&shared);
+    fs::write(shared.join("manifest.1-of-2.json"), &second).expect("written");
+    merge(&shared).exits(0);
+    assert!(files_under(&shared) == before);
+    let other =
+        String::from_utf8(second).expect("text").replace("\"scene-0002\"", "\"scene-0009\"");
+    fs::write(shared.join("manifest.1-of-2.json"), other).expect("written");
+    merge(&shared).exits(1).tells(&["manifest.1-of-2.json", "other labels"]);
+}
+
+fn merge(tree: &std::path::Path) -> Ended {
+    occlabel(&["merge-manifests", text(tree)])
 }
 
 #[test]

@@ -30,6 +30,7 @@ mod label;
 mod label_pairs;
 mod lacks;
 mod logged_scene;
+mod merge_manifests;
 mod presets;
 mod progress;
 mod quality;
@@ -108,6 +109,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
         Command::View(args) => view::run(args, console),
+        Command::MergeManifests(args) => merge_manifests::run(args, console),
         Command::Verify(args) => verify::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),

@@ -73,7 +73,7 @@ pub fn create_dir(path: &Path) -> Result<(), Fault> {
 ///
 /// # Errors
 /// If it is there and cannot be removed.
-pub(crate) fn remove_file(path: &Path) -> Result<(), Fault> {
+pub fn remove_file(path: &Path) -> Result<(), Fault> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
             let found = error.to_string();

@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 use crate::atomic::{remove_empty_dirs, remove_file};
 use crate::differences::differences;
 use crate::{
-    FileRecord, InputRecord, JournalEntry, LabelTree, Manifest, RunFiles, RunRecord, TreePath,
-    WriterLock, inputs_hash, journal, json,
+    FileRecord, InputHashes, InputRecord, JournalEntry, LabelTree, Manifest, RunFiles, RunRecord,
+    TreePath, WriterLock, journal, json,
 };
 
 /// The records of an earlier run: of one that was interrupted, of one that ended, or of both.
@@ -155,7 +155,7 @@ fn input_by_key(input: &InputRecord) -> (String, Value) {
 
 /// What of a run's record stands in its manifest.
 fn identity(run: &RunRecord) -> Value {
-    let inputs = inputs_hash(&run.inputs);
+    let inputs = InputHashes::of(&run.inputs).whole();
     json!({"program": run.program, "config": run.config, "inputs_hash": inputs})
 }
 

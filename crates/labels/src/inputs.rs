@@ -1,5 +1,6 @@
 //! Fingerprint of what a run reads.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::time::UNIX_EPOCH;
@@ -19,6 +20,9 @@ pub struct InputRecord {
     /// What changes when the file does.
     #[serde(flatten)]
     pub mark: InputMark,
+    /// The scene that it belongs to; none of what all scenes share.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scene: Option<String>,
 }
 
 /// What changes when a file does.
@@ -39,7 +43,7 @@ impl InputRecord {
     pub fn of_table(root: &Path, path: impl Into<String>) -> Result<Self, Fault> {
         let path = path.into();
         let (bytes, blake3) = hash_file(&root.join(&path))?;
-        Ok(Self { path, bytes, mark: InputMark::Blake3(blake3) })
+        Ok(Self { path, bytes, mark: InputMark::Blake3(blake3), scene: None })
     }
 
     /// The record of a sweep, which is not read.
@@ -52,14 +56,50 @@ impl InputRecord {
         let meta = fs::metadata(&place).and_then(|meta| Ok((meta.len(), meta.modified()?)));
         let (bytes, modified) = meta.map_err(|error| read_fault(&place, &error))?;
         let since = modified.duration_since(UNIX_EPOCH).unwrap_or_default();
-        Ok(Self { path, bytes, mark: InputMark::MtimeNs(since.as_nanos() as i64) })
+        Ok(Self { path, bytes, mark: InputMark::MtimeNs(since.as_nanos() as i64), scene: None })
+    }
+
+    /// The same as a file of this scene alone.
+    pub fn of_scene(mut self, scene: &str) -> Self {
+        self.scene = Some(scene.to_owned());
+        self
     }
 }
 
-/// BLAKE3 over paths, lengths and hashes, in hexadecimal: the same for every copy of a log, because
-/// no time goes in.
-pub fn inputs_hash(inputs: &[InputRecord]) -> String {
-    let mut inputs: Vec<_> = inputs.iter().collect();
+/// Hashes of what a run reads, which those of its shards make up: the same for every copy of a log,
+/// because no time goes in.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputHashes {
+    /// Of what all scenes share.
+    pub shared: String,
+    /// Of each scene's own files.
+    pub scenes: BTreeMap<String, String>,
+}
+
+impl InputHashes {
+    /// The hashes of these inputs, BLAKE3 over paths, lengths and hashes, in hexadecimal.
+    pub fn of(inputs: &[InputRecord]) -> Self {
+        let mut by_scene: BTreeMap<Option<&String>, Vec<&InputRecord>> = BTreeMap::new();
+        for input in inputs {
+            by_scene.entry(input.scene.as_ref()).or_default().push(input);
+        }
+        let shared = hash(by_scene.remove(&None).unwrap_or_default());
+        let of_scene = |(scene, inputs): (Option<&String>, _)| Some((scene?.clone(), hash(inputs)));
+        Self { shared, scenes: by_scene.into_iter().filter_map(of_scene).collect() }
+    }
+
+    /// One hash of them all.
+    pub fn whole(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.shared.as_bytes());
+        for (scene, hash) in &self.scenes {
+            hasher.update(format!("\n{scene}\0{hash}").as_bytes());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+}
+
+fn hash(mut inputs: Vec<&InputRecord>) -> String {
     inputs.sort();
     let mut hasher = blake3::Hasher::new();
     for input in inputs {
@@ -99,9 +139,28 @@ mod tests {
             path: path.to_owned(),
             bytes,
             mark: InputMark::MtimeNs(time),
+            scene: None,
         };
-        let hash = inputs_hash(&[sweep("a", 1, 5), sweep("b", 2, 6)]);
-        assert_eq!(hash, inputs_hash(&[sweep("b", 2, 9), sweep("a", 1, 8)]));
-        assert_ne!(hash, inputs_hash(&[sweep("a", 1, 5), sweep("b", 3, 6)]));
+        let hash = |inputs: &[InputRecord]| InputHashes::of(inputs).whole();
+        let told = hash(&[sweep("a", 1, 5), sweep("b", 2, 6)]);
+        assert_eq!(told, hash(&[sweep("b", 2, 9), sweep("a", 1, 8)]));
+        assert_ne!(told, hash(&[sweep("a", 1, 5), sweep("b", 3, 6)]));
+        assert_ne!(told, hash(&[sweep("a", 1, 5), sweep("b", 2, 6).of_scene("s")]));
+    }
+
+    #[test]
+    fn the_hashes_of_shards_make_up_that_of_the_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        ["table", "a", "b"]
+            .iter()
+            .for_each(|name| fs::write(folder.path().join(name), name).unwrap());
+        let table = InputRecord::of_table(folder.path(), "table").unwrap();
+        let sweep = |name: &str| InputRecord::of_sweep(folder.path(), name).unwrap().of_scene(name);
+        let mut merged = InputHashes::of(&[table.clone(), sweep("a")]);
+        let other = InputHashes::of(&[sweep("b"), table.clone()]);
+        assert_eq!(merged.shared, other.shared);
+        merged.scenes.extend(other.scenes);
+        let whole = InputHashes::of(&[table, sweep("a"), sweep("b")]);
+        assert_eq!((merged.whole(), &merged), (whole.whole(), &whole));
     }
 }

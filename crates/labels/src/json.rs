@@ -23,7 +23,10 @@ pub fn json_hash(value: &impl Serialize) -> String {
 }
 
 /// The value as a JSON file: two spaces an indent, one newline at the end.
-pub(crate) fn pretty(value: &impl Serialize) -> Vec<u8> {
+///
+/// # Panics
+/// If the value has no JSON form.
+pub fn pretty(value: &impl Serialize) -> Vec<u8> {
     let mut json = serde_json::to_vec_pretty(value).expect("a value with a JSON form");
     json.push(b'\n');
     json

@@ -53,11 +53,11 @@ mod shards;
 mod tree;
 mod verify;
 
-pub use atomic::{create_dir, write_file};
+pub use atomic::{create_dir, remove_file, write_file};
 pub use files::{FileRecord, hash_files};
-pub use inputs::{InputMark, InputRecord, inputs_hash};
+pub use inputs::{InputHashes, InputMark, InputRecord};
 pub use journal::{Journal, JournalEntry};
-pub use json::json_hash;
+pub use json::{json_hash, pretty as pretty_json};
 pub use lock::WriterLock;
 pub use manifest::{
     ClassRecord, GridRecord, Manifest, Program, SceneRecord, TaxonomyRecord, TrackRecord,
@@ -69,6 +69,7 @@ pub use numbers::{Number, NumberArray, NumberType};
 pub use pose_record::{PoseRecord, RigidRecord};
 pub use read::{LabelArrays, read_evidence, read_labels};
 pub use run::{Begun, RESUME_DIFFERS, Resume, RunRecord, begin};
-pub use run_files::RunFiles;
+pub use run_files::{RunFiles, name_of_whole};
+pub use shards::Shards;
 pub use tree::{LabelTree, TreePath};
 pub use verify::{unlisted_files, verify_file, verify_manifest};

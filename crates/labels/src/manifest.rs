@@ -10,7 +10,7 @@ use occlabel_core::{Fault, GridSpec};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{FileRecord, PoseRecord, json, shards};
+use crate::{FileRecord, InputHashes, PoseRecord, json, shards};
 
 /// `manifest.json`: the arrays' grid, classes and tracks, and every file with its hash.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,8 +23,11 @@ pub struct Manifest {
     pub config: Value,
     /// [`json_hash`](crate::json_hash) of `config`.
     pub config_hash: String,
-    /// [`inputs_hash`](crate::inputs_hash) of what was read.
+    /// Of all that was read: the [whole](InputHashes::whole) of `input_hashes`.
     pub inputs_hash: String,
+    /// Of the parts of it.
+    #[serde(default)]
+    pub input_hashes: InputHashes,
     /// Which raw name means which class.
     pub taxonomy: TaxonomyRecord,
     /// The dialect of the files; none of our own layout, which is that of Occ3D-nuScenes.
@@ -198,6 +201,7 @@ pub(crate) mod tests {
             config_hash: json_hash(&config),
             config,
             inputs_hash: "00".to_owned(),
+            input_hashes: InputHashes::default(),
             taxonomy: TaxonomyRecord { name: "occ3d-nuscenes".to_owned(), hash: "11".to_owned() },
             dialect: None,
             notes: Vec::new(),
@@ -219,6 +223,7 @@ pub(crate) mod tests {
             "config",
             "config_hash",
             "inputs_hash",
+            "input_hashes",
             "taxonomy",
             "grid",
             "classes",

@@ -165,7 +165,7 @@ fn refuse_another(files: &RunFiles, differences: &[String]) -> Result<(), Fault>
 mod tests {
     use super::*;
     use crate::manifest::tests::manifest;
-    use crate::{InputMark, LabelTree, TreePath, hash_files, inputs_hash};
+    use crate::{InputHashes, InputMark, LabelTree, TreePath, hash_files};
     use serde_json::json;
     use std::fs;
     use std::path::Path;
@@ -174,8 +174,8 @@ mod tests {
         let table = InputMark::Blake3("ab".to_owned());
         let sweep = InputMark::MtimeNs(7);
         let inputs = vec![
-            InputRecord { path: "sweep.bin".to_owned(), bytes: 20, mark: sweep },
-            InputRecord { path: "scene.json".to_owned(), bytes: 2, mark: table },
+            InputRecord { path: "sweep.bin".to_owned(), bytes: 20, mark: sweep, scene: None },
+            InputRecord { path: "scene.json".to_owned(), bytes: 2, mark: table, scene: None },
         ];
         RunRecord::new(manifest().config, inputs)
     }
@@ -220,7 +220,7 @@ mod tests {
         let (folder, files, begun) = two_finished();
         let paths = ["k1", "k2"].map(|keyframe| TreePath::labels("s", keyframe).unwrap());
         let listed = hash_files(files.tree(), paths).unwrap();
-        let inputs_hash = inputs_hash(&record().inputs);
+        let inputs_hash = InputHashes::of(&record().inputs).whole();
         let manifest = Manifest { files: listed, inputs_hash, ..manifest() };
         begun.end(&manifest, json!({"seconds": 1.5})).unwrap();
         (folder, files)

@@ -84,13 +84,20 @@ impl RunFiles {
 pub(crate) fn is_of_run(path: &str) -> bool {
     const OF_WHOLE: [&str; 5] =
         ["manifest.json", "report.json", "run.json", "journal.jsonl", ".run.lock"];
-    let is_shard = |part: &&str| {
+    let is_lock = path.starts_with("gts/") && path.ends_with("/.lock");
+    is_lock || OF_WHOLE.contains(&name_of_whole(path).as_deref().unwrap_or(path))
+}
+
+/// The path of the whole run's file in place of a shard's, which is `NAME.I-of-N.ENDING`; none if the path
+/// is not that of a shard's file.
+pub fn name_of_whole(path: &str) -> Option<String> {
+    let is_shard = |part: &str| {
         let numbers = part.split_once("-of-");
         numbers.is_some_and(|(i, n)| i.parse::<usize>().is_ok() && n.parse::<usize>().is_ok())
     };
-    let parts: Vec<&str> = path.split('.').filter(|part| !is_shard(part)).collect();
-    let is_lock = path.starts_with("gts/") && path.ends_with("/.lock");
-    is_lock || OF_WHOLE.contains(&parts.join(".").as_str())
+    let (rest, ending) = path.rsplit_once('.')?;
+    let (stem, shard) = rest.rsplit_once('.')?;
+    is_shard(shard).then(|| format!("{stem}.{ending}"))
 }
 
 #[cfg(test)]

@@ -5,27 +5,92 @@ use std::path::Path;
 
 use occlabel_core::Fault;
 
-use crate::{Manifest, RunFiles};
+use crate::{LabelTree, Manifest, RunFiles};
+
+/// The shards of a run that wrote a tree, all of which have ended.
+#[derive(Clone, Debug)]
+pub struct Shards {
+    /// Each shard's own files, in order.
+    pub files: Vec<RunFiles>,
+    /// What each says of its scenes.
+    pub manifests: Vec<Manifest>,
+}
+
+impl Shards {
+    /// The shards whose manifests `manifest.I-of-N.json` stand in a tree; `None` if none do.
+    ///
+    /// # Errors
+    /// If the manifest of one is absent, or cannot be read.
+    pub fn find(root: &Path) -> Result<Option<Self>, Fault> {
+        let Some(count) = shard_count(root) else { return Ok(None) };
+        let tree = LabelTree::new(root);
+        let files: Vec<_> =
+            (0..count).map(|index| RunFiles::shard(tree.clone(), index, count)).collect();
+        let manifests = files.iter().map(|files| {
+            let path = files.manifest();
+            Manifest::load(&path)?.ok_or_else(|| {
+                let expected = format!("the manifests of all {count} shards");
+                Fault::new("shards", path.display().to_string(), expected, "no such file")
+            })
+        });
+        let manifests = manifests.collect::<Result<Vec<_>, Fault>>()?;
+        Ok(Some(Self { files, manifests }))
+    }
+}
+
+impl Manifest {
+    /// What two shards of a run say together: the same in any order and in any groups.
+    ///
+    /// # Errors
+    /// If they are of different runs, or say different things of one scene.
+    pub fn merge(mut self, other: Self) -> Result<Self, Fault> {
+        let is_same_run = self.program == other.program
+            && self.config == other.config
+            && self.taxonomy == other.taxonomy
+            && self.input_hashes.shared == other.input_hashes.shared
+            && self.dialect == other.dialect
+            && self.grid == other.grid
+            && self.classes == other.classes
+            && self.free == other.free;
+        if !is_same_run {
+            let found = "another program, configuration, input, grid or classes";
+            return Err(Fault::new("shards", "manifest.json", "shards of one run", found));
+        }
+        for (scene, record) in other.scenes {
+            let told = self.scenes.entry(scene.clone()).or_insert_with(|| record.clone());
+            if *told != record {
+                let fault = Fault::new("shards", "manifest.json", "each scene in one shard", scene);
+                return Err(fault.record("scenes"));
+            }
+        }
+        self.files.extend(other.files);
+        self.files.sort();
+        self.files.dedup();
+        self.input_hashes.scenes.extend(other.input_hashes.scenes);
+        self.inputs_hash = self.input_hashes.whole();
+        Ok(self)
+    }
+
+    /// All manifests as one; `None` of none.
+    ///
+    /// # Errors
+    /// As for [`Manifest::merge`].
+    pub fn merge_all(manifests: impl IntoIterator<Item = Self>) -> Result<Option<Self>, Fault> {
+        let mut manifests = manifests.into_iter();
+        let Some(first) = manifests.next() else { return Ok(None) };
+        manifests.try_fold(first, Self::merge).map(Some)
+    }
+}
 
 /// The manifests `manifest.I-of-N.json` of a tree as one; `None` if there are none.
 ///
 /// # Errors
 /// If one cannot be read or is absent, or they are of different runs.
 pub(crate) fn load(root: &Path) -> Result<Option<Manifest>, Fault> {
-    let Some(count) = shard_count(root) else { return Ok(None) };
-    let shard = |index| {
-        let path = RunFiles::shard(crate::LabelTree::new(root), index, count).manifest();
-        Manifest::load(&path)?.ok_or_else(|| {
-            let expected = format!("the manifests of all {count} shards");
-            Fault::new("shards", path.display().to_string(), expected, "no such file")
-        })
-    };
-    let mut whole = shard(0)?;
-    for index in 1..count {
-        join(&mut whole, shard(index)?, root)?;
+    match Shards::find(root)? {
+        None => Ok(None),
+        Some(shards) => Manifest::merge_all(shards.manifests),
     }
-    whole.files.sort();
-    Ok(Some(whole))
 }
 
 /// How many shards there are, by the name of any shard's manifest.
@@ -38,23 +103,6 @@ fn shard_count(root: &Path) -> Option<usize> {
         count.parse().ok().filter(|&count| count > 0)
     };
     names.filter_map(count).max()
-}
-
-fn join(whole: &mut Manifest, shard: Manifest, root: &Path) -> Result<(), Fault> {
-    let is_same = whole.program == shard.program
-        && whole.config == shard.config
-        && whole.dialect == shard.dialect
-        && whole.grid == shard.grid
-        && whole.classes == shard.classes
-        && whole.free == shard.free;
-    if !is_same {
-        let place = root.display().to_string();
-        let found = "another program, configuration, grid or classes";
-        return Err(Fault::new("shards", place, "shards of one run", found));
-    }
-    whole.scenes.extend(shard.scenes);
-    whole.files.extend(shard.files);
-    Ok(())
 }
 
 #[cfg(test)]

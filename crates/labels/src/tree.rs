@@ -9,6 +9,7 @@
 //! ```
 
 use std::fmt;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
@@ -16,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::FileRecord;
 use crate::atomic::{create_dir, write_file};
+use crate::files::read_fault;
 
 /// A label tree on disk.
 #[derive(Clone, Debug)]
@@ -49,6 +51,30 @@ impl LabelTree {
         write_file(&place, bytes)?;
         Ok(FileRecord::of_bytes(path.clone(), bytes))
     }
+
+    /// The paths of everything in the tree that is no folder, in order. Links are not followed.
+    ///
+    /// # Errors
+    /// If a folder cannot be read.
+    pub fn files(&self) -> Result<Vec<String>, Fault> {
+        let mut found = Vec::new();
+        collect(&self.root, "", &mut found)?;
+        found.sort();
+        Ok(found)
+    }
+}
+
+fn collect(folder: &Path, prefix: &str, found: &mut Vec<String>) -> Result<(), Fault> {
+    let unreadable = |error| read_fault(folder, &error);
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let entry = entry.map_err(unreadable)?;
+        let path = format!("{prefix}{}", entry.file_name().to_string_lossy());
+        match entry.file_type().map_err(unreadable)?.is_dir() {
+            true => collect(&entry.path(), &format!("{path}/"), found)?,
+            false => found.push(path),
+        }
+    }
+    Ok(())
 }
 
 /// A file's path within a tree, with `/`, made of plain names: it cannot lead out.

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
 
 use occlabel_core::Fault;
 
-use crate::files::{hash_file, read_fault};
+use crate::files::hash_file;
 use crate::run_files::is_of_run;
 use crate::{FileRecord, LabelTree, Manifest, json_hash};
 
@@ -57,10 +56,8 @@ pub fn verify_manifest(manifest: &Manifest) -> Vec<Fault> {
 /// If a folder cannot be read.
 pub fn unlisted_files(tree: &LabelTree, manifest: &Manifest) -> Result<Vec<String>, Fault> {
     let listed: BTreeSet<&str> = manifest.files.iter().map(|file| file.path.as_str()).collect();
-    let mut found = Vec::new();
-    collect(tree.root(), "", &mut found)?;
+    let mut found = tree.files()?;
     found.retain(|path| !listed.contains(path.as_str()) && !is_of_run(path));
-    found.sort();
     Ok(found)
 }
 
@@ -69,19 +66,6 @@ fn keyframes(manifest: &Manifest) -> impl Iterator<Item = (&str, &str)> {
     manifest.scenes.iter().flat_map(|(scene, record)| {
         record.keyframes.iter().map(move |token| (scene.as_str(), token.as_str()))
     })
-}
-
-fn collect(folder: &Path, prefix: &str, found: &mut Vec<String>) -> Result<(), Fault> {
-    let unreadable = |error| read_fault(folder, &error);
-    for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let entry = entry.map_err(unreadable)?;
-        let path = format!("{prefix}{}", entry.file_name().to_string_lossy());
-        match entry.file_type().map_err(unreadable)?.is_dir() {
-            true => collect(&entry.path(), &format!("{path}/"), found)?,
-            false => found.push(path),
-        }
-    }
-    Ok(())
 }
 
 fn fault(record: &str, expected: String, found: String) -> Fault {

@@ -73,6 +73,8 @@ pub(crate) enum Command {
     Describe(DescribeArgs),
     /// Show labels: as a picture, for Foxglove and Rerun, as a mesh, or as a page.
     View(Box<ViewArgs>),
+    /// Make the manifests of a run in shards one, as an undivided run would have written it.
+    MergeManifests(MergeArgs),
     /// Check a label tree against its manifest, every bit of it.
     Verify(VerifyArgs),
     /// Show what a log holds.
@@ -98,6 +100,13 @@ pub(crate) struct DemoArgs {
     /// Where the log and its labels go.
     #[arg(long, default_value = "occlabel-demo")]
     pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArgs {
+    /// The label tree, all of whose shards have ended.
+    #[arg(value_name = "DIR")]
+    pub(crate) labels: PathBuf,
 }
 
 #[derive(Debug, Args)]

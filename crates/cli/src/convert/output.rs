@@ -5,7 +5,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 use occlabel_core::Fault;
-use occlabel_labels::{Manifest, RunFiles, RunRecord, inputs_hash};
+use occlabel_labels::{InputHashes, Manifest, RunFiles, RunRecord};
 
 /// Refuses a folder that holds anything but what this very command wrote.
 pub(crate) fn check(files: &RunFiles, record: &RunRecord) -> Result<(), Fault> {
@@ -33,5 +33,5 @@ fn ended_before(files: &RunFiles, record: &RunRecord) -> Result<bool, Fault> {
     let Some(manifest) = Manifest::load(&files.manifest())? else { return Ok(false) };
     Ok(manifest.program == record.program
         && manifest.config == record.config
-        && manifest.inputs_hash == inputs_hash(&record.inputs))
+        && manifest.inputs_hash == InputHashes::of(&record.inputs).whole())
 }

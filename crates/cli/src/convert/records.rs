@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use occlabel_core::Fault;
 use occlabel_dialects::{Class, ClassTable, KeyframeKey};
 use occlabel_labels::{
-    ClassRecord, GridRecord, InputRecord, JournalEntry, Manifest, Program, RunRecord, SceneRecord,
-    TaxonomyRecord, inputs_hash, json_hash,
+    ClassRecord, GridRecord, InputHashes, InputRecord, JournalEntry, Manifest, Program, RunRecord,
+    SceneRecord, TaxonomyRecord, json_hash,
 };
 use serde_json::{Map, Value, json};
 
@@ -65,12 +65,14 @@ pub(crate) fn manifest(
     let classes = &job.to.classes;
     let mut files: Vec<_> = entries.iter().flat_map(|entry| entry.files.clone()).collect();
     files.sort_by(|a, b| a.path.cmp(&b.path));
+    let input_hashes = InputHashes::of(&record.inputs);
     Manifest {
         program: Program::current(),
         preset: None,
         config: record.config.clone(),
         config_hash: record.config_hash.clone(),
-        inputs_hash: inputs_hash(&record.inputs),
+        inputs_hash: input_hashes.whole(),
+        input_hashes,
         dialect: Some(job.to.name.clone()),
         taxonomy: TaxonomyRecord { name: job.to.name.clone(), hash: json_hash(classes) },
         grid: GridRecord::new(job.set.frame(), job.set.spec()),

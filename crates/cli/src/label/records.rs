@@ -6,8 +6,8 @@ use std::path::Path;
 use occlabel_core::{Fault, Taxonomy};
 use occlabel_dialects::Annotations;
 use occlabel_labels::{
-    ClassRecord, FileRecord, GridRecord, InputMark, InputRecord, JournalEntry, Manifest, Program,
-    RunRecord, SceneRecord, TaxonomyRecord, inputs_hash, json_hash,
+    ClassRecord, FileRecord, GridRecord, InputHashes, InputMark, InputRecord, JournalEntry,
+    Manifest, Program, RunRecord, SceneRecord, TaxonomyRecord, json_hash,
 };
 use occlabel_pipeline::Config;
 use serde_json::Value;
@@ -22,7 +22,10 @@ pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
     let root = &job.args.log.input;
     let tables =
         job.opened.source.tables().into_iter().map(|path| InputRecord::of_table(root, path));
-    let sweeps = plan.files().map(|(path, _)| Ok(sweep_record(root, path)));
+    let sweeps = plan.scenes.iter().flat_map(|scene| {
+        let record = |(path, _): &(String, u64)| Ok(sweep_record(root, path).of_scene(&scene.name));
+        scene.files.iter().map(record)
+    });
     let inputs = tables.chain(sweeps).collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config_json(&job.opened.config), inputs))
 }
@@ -33,6 +36,7 @@ fn sweep_record(root: &Path, path: &str) -> InputRecord {
         path: path.to_owned(),
         bytes: 0,
         mark: InputMark::MtimeNs(0),
+        scene: None,
     })
 }
 
@@ -50,12 +54,14 @@ pub(crate) fn manifest(
 ) -> Manifest {
     let taxonomy = &grid.rules.taxonomy;
     let config = config_json(&grid.config);
+    let input_hashes = InputHashes::of(&record.inputs);
     Manifest {
         program: Program::current(),
         preset: job.opened.preset.clone(),
         config_hash: json_hash(&config),
         config,
-        inputs_hash: inputs_hash(&record.inputs),
+        inputs_hash: input_hashes.whole(),
+        input_hashes,
         taxonomy: TaxonomyRecord {
             name: job.opened.config.taxonomy.file.clone(),
             hash: job.opened.taxonomy_hash.clone(),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use occlabel_core::{GridSpec, VoxelGrid};
 use occlabel_dialects::{Dialect, Encoded, KeyframeLabels};
-use occlabel_labels::{GridRecord, Manifest, Program, SceneRecord, TaxonomyRecord};
+use occlabel_labels::{GridRecord, InputHashes, Manifest, Program, SceneRecord, TaxonomyRecord};
 
 /// A grid with three different sides, so that no two axes can be mixed up unseen.
 pub(crate) fn spec() -> GridSpec {
@@ -55,6 +55,7 @@ pub(crate) fn manifest(spec: &GridSpec, dialect: Option<&str>) -> Manifest {
         config: serde_json::json!({}),
         config_hash: String::new(),
         inputs_hash: String::new(),
+        input_hashes: InputHashes::default(),
         taxonomy: TaxonomyRecord { name: "own".to_owned(), hash: String::new() },
         dialect: dialect.map(str::to_owned),
         notes: Vec::new(),
