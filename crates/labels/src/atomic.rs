@@ -7,12 +7,14 @@
 //! On any error the part is removed. What a killed process left behind goes when the same file is
 //! written again.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, ErrorKind, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
 use tempfile::{Builder, NamedTempFile};
+
+use crate::disk;
 
 /// Ends the name of a file that is not whole yet.
 const PART: &str = ".part";
@@ -26,20 +28,23 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
     refuse_symlink(path)?;
     remove_leftovers(path)
         .and_then(|()| write_part(path, bytes))
-        .and_then(|part| part.persist(path).map_err(|refused| refused.error))
+        .and_then(|part| disk::rename(part, path))
         .and_then(|_| sync_folder_of(path))
         .map_err(|error| write_fault(path, bytes.len(), &error))
 }
 
-/// Creates a file with its contents, both at once. `false` if there is one already.
+/// Creates a file with its contents, both at once. `false` if there is one already, or if another, who
+/// has it now, removed our part as a leftover.
 ///
 /// # Errors
 /// If it cannot be written.
 pub(crate) fn create_exclusive(path: &Path, bytes: &[u8]) -> Result<bool, Fault> {
-    let created = write_part(path, bytes).and_then(|part| match part.persist_noclobber(path) {
+    let created = write_part(path, bytes).and_then(|part| match disk::rename_new(part, path) {
         Ok(_) => sync_folder_of(path).map(|()| true),
-        Err(refused) if refused.error.kind() == ErrorKind::AlreadyExists => Ok(false),
-        Err(refused) => Err(refused.error),
+        Err(error) if matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) => {
+            Ok(false)
+        }
+        Err(error) => Err(error),
     });
     created.map_err(|error| write_fault(path, bytes.len(), &error))
 }
@@ -55,7 +60,7 @@ pub fn create_dir(path: &Path) -> Result<(), Fault> {
     if path.parent().is_some_and(|above| !above.as_os_str().is_empty()) {
         create_dir(folder_of(path))?;
     }
-    match fs::create_dir(path) {
+    match disk::create_dir(path) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists || !path.is_dir() => Err(error),
         _ => sync_folder_of(path),
     }
@@ -74,7 +79,7 @@ pub fn create_dir(path: &Path) -> Result<(), Fault> {
 /// # Errors
 /// If it is there and cannot be removed.
 pub fn remove_file(path: &Path) -> Result<(), Fault> {
-    match fs::remove_file(path) {
+    match disk::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
             let found = error.to_string();
             Err(Fault::new("remove", path.display().to_string(), "to remove this file", found))
@@ -87,7 +92,7 @@ pub fn remove_file(path: &Path) -> Result<(), Fault> {
 pub(crate) fn remove_empty_dirs(folder: &Path, root: &Path) {
     let inside = folder.ancestors().take_while(|above| *above != root && above.starts_with(root));
     for folder in inside {
-        if fs::remove_dir(folder).is_err() {
+        if disk::remove_dir(folder).is_err() {
             return;
         }
     }
@@ -105,9 +110,7 @@ impl Appender {
     /// Opens a file that is there, to append to it.
     pub(crate) fn open(path: &Path) -> Result<Self, Fault> {
         refuse_symlink(path)?;
-        let opened = OpenOptions::new()
-            .append(true)
-            .open(path)
+        let opened = disk::open_by(OpenOptions::new().append(true), path)
             .and_then(|file| Ok((file.metadata()?.len(), file)));
         let (bytes, file) = opened.map_err(|error| write_fault(path, 0, &error))?;
         Ok(Self { path: path.to_owned(), file, bytes })
@@ -115,7 +118,7 @@ impl Appender {
 
     /// Appends a line. If that fails, what was written of it is cut off again.
     pub(crate) fn append(&mut self, line: &[u8]) -> Result<(), Fault> {
-        match self.file.write_all(line).and_then(|()| self.file.sync_data()) {
+        match disk::write(&mut self.file, line).and_then(|()| disk::sync(&self.file)) {
             Ok(()) => {
                 self.bytes += line.len() as u64;
                 Ok(())
@@ -130,7 +133,7 @@ impl Appender {
 
 /// Refuses a path whose last part is a symbolic link.
 pub(crate) fn refuse_symlink(path: &Path) -> Result<(), Fault> {
-    match fs::symlink_metadata(path) {
+    match disk::metadata(path) {
         Ok(meta) if meta.is_symlink() => {
             let place = path.display().to_string();
             let found = "a symbolic link";
@@ -148,22 +151,21 @@ fn write_part(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     builder.prefix(&prefix).suffix(PART);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut part = builder.tempfile_in(folder_of(path))?;
-    part.write_all(bytes)?;
-    part.as_file().sync_all()?;
+    let mut part = disk::create_part(&builder, folder_of(path))?;
+    disk::write(&mut part, bytes)?;
+    disk::sync(part.as_file())?;
     Ok(part)
 }
 
 /// Removes what a killed process left of the same file. A file has one writer at a time: the locks
 /// see to that.
-fn remove_leftovers(path: &Path) -> io::Result<()> {
+pub(crate) fn remove_leftovers(path: &Path) -> io::Result<()> {
     let prefix = part_prefix(path);
-    for entry in fs::read_dir(folder_of(path))? {
-        let entry = entry?;
+    for entry in disk::list(folder_of(path))? {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if name.starts_with(&prefix) && name.ends_with(PART) {
-            let _ = fs::remove_file(entry.path());
+            let _ = disk::remove_file(&entry.path());
         }
     }
     Ok(())
@@ -184,7 +186,7 @@ fn folder_of(path: &Path) -> &Path {
 /// Makes the names in the folder safe, as fsync on the file makes its bytes. Some network file
 /// systems cannot; there it is as safe as they are.
 fn sync_folder_of(path: &Path) -> io::Result<()> {
-    match File::open(folder_of(path))?.sync_all() {
+    match disk::open(folder_of(path)).and_then(|folder| disk::sync(&folder)) {
         Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
             Ok(())
         }
@@ -209,6 +211,7 @@ fn write_fault(path: &Path, bytes: usize, error: &io::Error) -> Fault {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).unwrap();

@@ -1,13 +1,12 @@
 //! What a manifest or a journal says of a file: its path, length and hash.
 
-use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 
 use occlabel_core::Fault;
 use serde::{Deserialize, Serialize};
 
-use crate::{LabelTree, TreePath};
+use crate::{LabelTree, TreePath, disk};
 
 /// A finished file of a tree.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -57,7 +56,7 @@ impl FileRecord {
 
     /// Whether a file of the recorded length stands there. (It is not read.)
     pub fn stands(&self, tree: &LabelTree) -> bool {
-        let meta = fs::symlink_metadata(tree.place(&self.path));
+        let meta = disk::metadata(&tree.place(&self.path));
         meta.is_ok_and(|meta| meta.is_file() && meta.len() == self.bytes)
     }
 }
@@ -80,7 +79,7 @@ pub fn hash_files(
 /// Length and BLAKE3 of a file, read in pieces.
 pub(crate) fn hash_file(path: &Path) -> Result<(u64, String), Fault> {
     let mut hasher = blake3::Hasher::new();
-    File::open(path)
+    disk::open(path)
         .and_then(|file| hasher.update_reader(file).map(|_| ()))
         .map_err(|error| read_fault(path, &error))?;
     Ok((hasher.count(), hasher.finalize().to_hex().to_string()))
@@ -94,6 +93,7 @@ pub(crate) fn read_fault(path: &Path, error: &io::Error) -> Fault {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn tree_with(paths: &[&str]) -> (tempfile::TempDir, LabelTree) {
         let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,5 @@
 //! JSON on disk: pretty, the same bytes each time, and bounded when read.
 
-use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -8,6 +7,7 @@ use occlabel_core::Fault;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::disk;
 use crate::files::read_fault;
 
 /// The largest JSON file that is read: a manifest of a million keyframes has about 300 MB.
@@ -49,7 +49,7 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, Fault>
 /// A file's bytes; `None` if there is none.
 pub(crate) fn read_bounded(path: &Path) -> Result<Option<Vec<u8>>, Fault> {
     let mut bytes = Vec::new();
-    match File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes)) {
+    match disk::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes)) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(read_fault(path, &error)),
         Ok(_) if bytes.len() as u64 > MAX_BYTES => {

@@ -1,14 +1,14 @@
 //! One writer at a time: a scene's `.lock` and a run's hold the writer's process.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
 
-use crate::atomic::{create_dir, create_exclusive, remove_file};
+use crate::atomic::{create_dir, create_exclusive, remove_file, remove_leftovers};
 use crate::files::read_fault;
-use crate::{LabelTree, TreePath};
+use crate::{LabelTree, TreePath, disk};
 
 /// How often a lock that vanishes under our eyes is tried again.
 const TRIES: usize = 3;
@@ -36,7 +36,9 @@ impl WriterLock {
         let owner = Owner::this_process();
         for _ in 0..TRIES {
             if create_exclusive(&path, owner.text().as_bytes())? || take_over(&path, &owner)? {
-                return Ok(Self { path, owner });
+                let lock = Self { path, owner };
+                remove_leftovers(&lock.path).map_err(|error| read_fault(&lock.path, &error))?;
+                return Ok(lock);
             }
         }
         let place = path.display().to_string();
@@ -104,7 +106,7 @@ fn began(process: u32) -> Option<u64> {
 ///
 /// The lock's file is itself locked meanwhile, so that of two who find it stale one is refused.
 fn take_over(path: &Path, us: &Owner) -> Result<bool, Fault> {
-    let opened = OpenOptions::new().read(true).write(true).open(path);
+    let opened = disk::open_by(OpenOptions::new().read(true).write(true), path);
     let file = match opened {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
         opened => opened.map_err(|error| read_fault(path, &error))?,
@@ -133,8 +135,8 @@ fn refuse_if_held(path: &Path, text: &str) -> Result<(), Fault> {
 fn overwrite(mut file: &File, text: &str) -> io::Result<()> {
     io::Seek::rewind(&mut file)?;
     file.set_len(0)?;
-    file.write_all(text.as_bytes())?;
-    file.sync_all()
+    disk::write(&mut file, text.as_bytes())?;
+    disk::sync(file)
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! The manifests of a run in shards, read as one.
 
-use std::fs;
 use std::path::Path;
 
 use occlabel_core::Fault;
 
-use crate::{LabelTree, Manifest, RunFiles};
+use crate::{LabelTree, Manifest, RunFiles, disk};
 
 /// The shards of a run that wrote a tree, all of which have ended.
 #[derive(Clone, Debug)]
@@ -95,8 +94,8 @@ pub(crate) fn load(root: &Path) -> Result<Option<Manifest>, Fault> {
 
 /// How many shards there are, by the name of any shard's manifest.
 fn shard_count(root: &Path) -> Option<usize> {
-    let names =
-        fs::read_dir(root).ok()?.flatten().filter_map(|entry| entry.file_name().into_string().ok());
+    let entries = disk::list(root).ok()?.into_iter();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
     let count = |name: String| {
         let shard = name.strip_prefix("manifest.")?.strip_suffix(".json")?;
         let (_, count) = shard.split_once("-of-")?;
@@ -109,6 +108,7 @@ fn shard_count(root: &Path) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::manifest::tests::manifest;
+    use std::fs;
 
     fn write(root: &Path, name: &str, manifest: &Manifest) {
         fs::write(root.join(name), manifest.to_json()).unwrap();

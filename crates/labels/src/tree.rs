@@ -9,15 +9,14 @@
 //! ```
 
 use std::fmt;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
 use serde::{Deserialize, Serialize};
 
-use crate::FileRecord;
 use crate::atomic::{create_dir, write_file};
 use crate::files::read_fault;
+use crate::{FileRecord, disk};
 
 /// A label tree on disk.
 #[derive(Clone, Debug)]
@@ -66,8 +65,7 @@ impl LabelTree {
 
 fn collect(folder: &Path, prefix: &str, found: &mut Vec<String>) -> Result<(), Fault> {
     let unreadable = |error| read_fault(folder, &error);
-    for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let entry = entry.map_err(unreadable)?;
+    for entry in disk::list(folder).map_err(unreadable)? {
         let path = format!("{prefix}{}", entry.file_name().to_string_lossy());
         match entry.file_type().map_err(unreadable)?.is_dir() {
             true => collect(&entry.path(), &format!("{path}/"), found)?,

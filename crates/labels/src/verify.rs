@@ -1,13 +1,12 @@
 //! A tree against its manifest: what is missing, changed, or not listed.
 
 use std::collections::BTreeSet;
-use std::fs;
 
 use occlabel_core::Fault;
 
 use crate::files::hash_file;
 use crate::run_files::is_of_run;
-use crate::{FileRecord, LabelTree, Manifest, json_hash};
+use crate::{FileRecord, LabelTree, Manifest, disk, json_hash};
 
 /// Whether a listed file stands in the tree as its record says, every bit of it.
 ///
@@ -17,7 +16,7 @@ pub fn verify_file(tree: &LabelTree, record: &FileRecord) -> Result<(), Fault> {
     let place = tree.place(&record.path);
     let expected = format!("{} bytes of hash {}", record.bytes, record.blake3);
     let fault = |rule, found: String| Err(Fault::new(rule, record.path.as_str(), &expected, found));
-    match fs::symlink_metadata(&place) {
+    match disk::metadata(&place) {
         Err(error) => return fault("file-missing", error.to_string()),
         Ok(meta) if !meta.is_file() => return fault("file-kind", "no plain file".to_owned()),
         Ok(_) => {}
@@ -77,6 +76,7 @@ mod tests {
     use super::*;
     use crate::manifest::tests::manifest;
     use crate::{SceneRecord, TreePath};
+    use std::fs;
 
     /// A tree of two keyframes, and its manifest.
     fn tree() -> (tempfile::TempDir, LabelTree, Manifest) {
