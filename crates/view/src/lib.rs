@@ -7,7 +7,7 @@
 //!
 //! Every way to show a scene takes a [`ShownScene`] and its [`ShownKeyframe`]s, whatever dialect they
 //! were read from. In pictures, what a voxel looks like is [`Painted`]'s affair; where it stands is
-//! that of [`birds_eye`], [`perspective`] and their siblings.
+//! that of [`Page`]'s methods, one a kind of picture.
 //!
 //! ```
 //! use occlabel_core::{GridSpec, Palette, VoxelGrid};
@@ -35,5 +35,8 @@
 mod picture;
 mod shown;
 
-pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
+pub use picture::{
+    Across, Aim, BirdsEye, CameraView, Change, ChangeCounts, Difference, Orbit, Page, Painted,
+    Strip, birds_eye, perspective, png,
+};
 pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

@@ -6,6 +6,7 @@ mod describe;
 mod evaluate;
 mod label;
 mod log;
+mod picture;
 mod quality;
 mod simulate;
 mod view;
@@ -20,9 +21,10 @@ pub(crate) use describe::DescribeArgs;
 pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
+pub(crate) use picture::{AcrossArg, PictureArg, PictureArgs};
 pub(crate) use quality::QualityArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
-pub(crate) use view::{PictureArg, ViewArgs};
+pub(crate) use view::ViewArgs;
 
 /// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
 /// drives.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use occlabel_core::ColorSet;
 
-use super::{ConfigArgs, LogArgs};
+use super::{ConfigArgs, LogArgs, PictureArgs};
 
 #[derive(Debug, Args)]
 #[command(mut_arg("format", |arg| arg.required(false)))]
@@ -29,9 +29,8 @@ pub(crate) struct ViewArgs {
     /// The colours of the classes.
     #[arg(long, value_enum, default_value_t = ColorsArg::Standard, value_name = "SET")]
     pub(crate) colors: ColorsArg,
-    /// Which picture a .png is.
-    #[arg(long, value_enum, default_value_t = PictureArg::BirdsEye)]
-    pub(crate) picture: PictureArg,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
     /// The log that the labels were made of: some of what can be shown stands only there.
     #[command(flatten)]
     pub(crate) log: Option<LogArgs>,
@@ -55,13 +54,4 @@ impl From<ColorsArg> for ColorSet {
             ColorsArg::ColorBlind => Self::ColorBlind,
         }
     }
-}
-
-/// A kind of picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PictureArg {
-    /// From above: the class of the topmost occupied voxel.
-    BirdsEye,
-    /// Occupied voxels as lit cubes.
-    Perspective,
 }

@@ -1,5 +1,7 @@
 //! `view`: labels as one can look at them, by the ending of the file that is made.
 
+mod cameras;
+mod picture_flags;
 mod pictures;
 
 use occlabel_core::Fault;
@@ -15,6 +17,9 @@ pub(crate) fn run(args: &ViewArgs, console: &Console) -> Result<Outcome, Stop> {
         "png" => pictures::make,
         _ => return Err(Stop::usage(unknown_ending(args))),
     };
+    if ending != "png" {
+        args.picture.check_unused().map_err(Stop::usage)?;
+    }
     let labels = ShownSet::open(&args.labels, args.dialect.as_deref()).map_err(Stop::usage)?;
     let labels = labels.colored(args.colors.into());
     make(args, &labels, console)?;

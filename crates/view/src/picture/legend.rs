@@ -21,8 +21,14 @@ pub(crate) struct Legend {
 impl Legend {
     /// The classes that occur in the labels.
     pub(crate) fn of(labels: &Painted) -> Self {
-        let entry = |id: u8| (labels.color(id), labels.palette.label(id));
-        Self { entries: labels.present().into_iter().map(entry).collect() }
+        Self::default().with_classes(labels, &labels.present())
+    }
+
+    /// The legend with classes, in the colours of the labels.
+    pub(crate) fn with_classes(self, labels: &Painted, classes: &[u8]) -> Self {
+        classes
+            .iter()
+            .fold(self, |legend, &id| legend.with(labels.color(id), &labels.palette.label(id)))
     }
 
     /// The legend with one entry more.
@@ -49,8 +55,16 @@ impl Legend {
 
     /// Draws it with its upper left corner at a place.
     pub(crate) fn draw(&self, picture: &mut RgbImage, at: At) {
-        for (row, (color, text)) in self.entries.iter().enumerate() {
-            let left = At::new(at.x, at.y + (row as f64 + 0.5) * ROW_PX);
+        self.draw_within(picture, at, f64::INFINITY);
+    }
+
+    /// Draws it in no more than a height: with less between the rows if it needs be, and then without
+    /// the last of them.
+    pub(crate) fn draw_within(&self, picture: &mut RgbImage, at: At, height_px: f64) {
+        let row_px = (height_px / self.entries.len().max(1) as f64).clamp(SWATCH_PX + 2.0, ROW_PX);
+        let fitting = (height_px / row_px) as usize;
+        for (row, (color, text)) in self.entries.iter().enumerate().take(fitting) {
+            let left = At::new(at.x, at.y + (row as f64 + 0.5) * row_px);
             swatch(picture, left, *color);
             let top = left.y - CAPITAL_ROWS / 2.0 * STEP_PX;
             write(picture, At::new(at.x + SWATCH_PX + GAP_PX, top), STEP_PX, INK, text);

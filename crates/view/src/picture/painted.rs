@@ -64,6 +64,21 @@ impl<'a> Painted<'a> {
         told && self.mask_lidar.is_none_or(|mask| mask.values()[flat] != 0)
     }
 
+    /// Whether the file has no label of a place of the flat array.
+    pub(crate) fn unlabelled(&self, flat: usize) -> bool {
+        self.semantics.values()[flat] == NO_LABEL
+    }
+
+    /// Whether the labels tell what was not observed from what is free.
+    pub(crate) fn tells_unobserved(&self) -> bool {
+        self.mask_lidar.is_some() || self.semantics.values().contains(&NO_LABEL)
+    }
+
+    /// What free voxels are called.
+    pub(crate) fn free_name(&self) -> &'static str {
+        if self.tells_unobserved() { "free" } else { "free or unobserved" }
+    }
+
     /// Whether no camera sees a place of the flat array, though there are cameras
     /// ([`Painted::has_cameras`]).
     pub(crate) fn unseen(&self, flat: usize) -> bool {

@@ -1,0 +1,63 @@
+//! The keyframes of a scene, side by side.
+
+use image::RgbImage;
+use occlabel_core::GridSpec;
+
+use crate::picture::birds_eye::{map, map_size, mark_ego, with_states};
+use crate::picture::column::{Column, columns};
+use crate::picture::legend::Legend;
+use crate::picture::page::Page;
+use crate::picture::painted::Painted;
+use crate::picture::tiles::Tiles;
+
+/// A sheet of keyframes from above, drawn one at a time, so that no two have to be held.
+pub struct Strip<'a> {
+    page: Page<'a>,
+    tiles: Tiles,
+    drawn: u32,
+    present: [bool; 256],
+    /// One column of each state that occurs.
+    states: Vec<Column>,
+}
+
+impl<'a> Strip<'a> {
+    /// A strip for a number of keyframes in grids like this.
+    pub fn new(page: Page<'a>, spec: &GridSpec, keyframes: usize) -> Self {
+        let tiles = Tiles::new(&vec![aspect(spec); keyframes], page.body_px());
+        Self { page, tiles, drawn: 0, present: [false; 256], states: Vec::new() }
+    }
+
+    /// Draws the next keyframe.
+    ///
+    /// # Panics
+    /// If the grids are not of the spec's shape.
+    pub fn add(&mut self, labels: &Painted, caption: &str) {
+        labels.check();
+        let columns = columns(labels);
+        let size = map_size(labels.spec, self.tiles.size_px(aspect(labels.spec)));
+        let mut tile = map(labels, &columns, size);
+        mark_ego(&mut tile, labels.spec, (f64::from(size.0) / 700.0).clamp(0.35, 1.0));
+        self.tiles.put(self.drawn, &tile, caption);
+        self.drawn += 1;
+        labels.present().into_iter().for_each(|class| self.present[usize::from(class)] = true);
+        for column in columns {
+            if column.top().is_none() && !self.states.contains(&column) {
+                self.states.push(column);
+            }
+        }
+    }
+
+    /// The picture, with a legend in the colours of one of the keyframes.
+    pub fn finish(self, labels: &Painted) -> RgbImage {
+        let classes: Vec<u8> = (0..255).filter(|&id| self.present[usize::from(id)]).collect();
+        let legend = Legend::default().with_classes(labels, &classes);
+        let legend = with_states(legend, labels, &self.states);
+        self.page.around(&self.tiles.into_picture(), &legend)
+    }
+}
+
+/// Width by height of a map.
+fn aspect(spec: &GridSpec) -> f64 {
+    let extent_m = spec.max_m() - spec.min_m();
+    extent_m.y / extent_m.x
+}
