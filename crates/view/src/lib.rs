@@ -32,8 +32,13 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod mesh;
 mod picture;
+mod recording;
+mod rows;
 mod shown;
 
+pub use mesh::{glb, ply_cubes, ply_points};
 pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
+pub use recording::{EGO, GRID, Recording, ShownBox, WORLD};
 pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

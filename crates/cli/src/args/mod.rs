@@ -22,7 +22,7 @@ pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use quality::QualityArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
-pub(crate) use view::{PictureArg, ViewArgs};
+pub(crate) use view::{MeshArg, PictureArg, ViewArgs};
 
 /// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
 /// drives.
