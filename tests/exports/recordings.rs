@@ -8,7 +8,7 @@ use mcap::MessageStream;
 
 use crate::outside::python;
 use crate::street::street;
-use crate::support::{occlabel, text};
+use crate::support::{SMALL, manifest, occlabel, text};
 
 /// The times of messages by topic, nanoseconds.
 fn times(file: &Path) -> BTreeMap<String, Vec<u64>> {
@@ -50,6 +50,26 @@ fn a_recording_without_a_log_has_the_labels_and_their_places() {
 }
 
 #[test]
+fn a_grid_in_the_lidars_frame_stands_at_the_lidar() {
+    let street = street();
+    let labels = street.beside("lidar-labels");
+    let line = ["label", "--output", text(&labels), "--set", "grid.frame=lidar"];
+    occlabel(&[&line[..], &street.with_log(), &SMALL].concat()).exits(0);
+    let tables = street.log.join("v1.0-sim");
+    for (name, log, more) in [
+        ("lidar.mcap", &street.with_log()[..], Some(text(&tables))),
+        ("lidar-bare.mcap", &[], None),
+    ] {
+        let file = street.beside(name);
+        let line = ["view", text(&labels), "--output", text(&file)];
+        occlabel(&[&line[..], log].concat()).exits(0);
+        let args = [text(&file), text(&labels)].into_iter().chain(more);
+        let Some(compared) = python("mcap_agrees.py", &args.collect::<Vec<_>>()) else { return };
+        assert_eq!(compared["keyframes"], 3);
+    }
+}
+
+#[test]
 fn keyframes_without_times_stand_a_second_apart_and_nowhere() {
     let street = street();
     let [bare, file] = ["bare", "bare.mcap"].map(|name| street.beside(name));
@@ -77,7 +97,7 @@ fn all_sweeps_are_those_of_the_scene_or_those_between_the_wanted_keyframes() {
     assert_eq!(own, keyframes);
     let (all, _) = sweeps("all.mcap", &["--all-sweeps"]);
     assert!(all.len() > 2 * own.len(), "{} sweeps", all.len());
-    let tokens = crate::support::manifest(&street.labels)["scenes"]["street"]["poses"].clone();
+    let tokens = manifest(&street.labels)["scenes"]["street"]["poses"].clone();
     let wanted = [0, 1].map(|at| tokens[at]["token"].as_str().expect("a token")).join(",");
     let (between, two) = sweeps("two.mcap", &["--all-sweeps", "--keyframes", &wanted]);
     assert_eq!(two, keyframes[..2]);

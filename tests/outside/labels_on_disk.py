@@ -6,6 +6,19 @@ from pathlib import Path
 import numpy as np
 
 
+def matrix(translation, wxyz):
+    """A pose as a matrix of 4 x 4."""
+    w, x, y, z = wxyz
+    turn = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    placed = np.eye(4)
+    placed[:3, :3], placed[:3, 3] = turn, translation
+    return placed
+
+
 class Labels:
     """The first scene of a label tree."""
 
@@ -17,6 +30,10 @@ class Labels:
         self.names = [one["name"] for one in self.manifest["classes"] if one["id"] != self.manifest["free"]]
         grid = self.manifest["grid"]
         self.lower, self.size = np.array(grid["min_m"]), np.array(grid["voxel_size_m"])
+
+    def world_from_grid(self, pose):
+        known = [matrix(pose[name]["translation"], pose[name]["rotation"]) for name in ("world_from_ego", "ego_from_lidar")]
+        return known[0] @ known[1] if self.manifest["grid"]["frame"] == "lidar" else known[0]
 
     def arrays(self, token):
         """The keyframe's arrays by name."""

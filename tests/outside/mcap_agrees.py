@@ -10,7 +10,7 @@ import numpy as np
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from labels_on_disk import Labels
+from labels_on_disk import Labels, matrix
 
 KINDS = {1: "u1", 3: "<u2", 7: "<f4"}
 counted = Counter()
@@ -40,18 +40,6 @@ def table(fields, stride, data):
     kinds = [KINDS[field.type] for field in fields]
     offsets = [field.offset for field in fields]
     return np.frombuffer(data, dtype={"names": names, "formats": kinds, "offsets": offsets, "itemsize": stride})
-
-
-def matrix(translation, wxyz):
-    w, x, y, z = wxyz
-    turn = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    placed = np.eye(4)
-    placed[:3, :3], placed[:3, 3] = turn, translation
-    return placed
 
 
 def of_message(translation, turn):
@@ -122,9 +110,9 @@ def check_labels(labels, topics, colors):
         arrays = labels.arrays(pose["token"])
         check_grid(labels, arrays, grid, colors)
         check_voxels(labels, arrays, points, colors)
-        known = pose["world_from_ego"]
-        close(placed["map", "grid", time], matrix(known["translation"], known["rotation"]))
-        close(placed["map", "base_link", time], placed["map", "grid", time])
+        close(placed["map", "grid", time], labels.world_from_grid(pose))
+        if labels.manifest["grid"]["frame"] == "ego":
+            close(placed["map", "base_link", time], placed["map", "grid", time])
         counted["keyframes"] += 1
 
 
@@ -142,7 +130,9 @@ class Log:
             self.captures[channel, capture["timestamp"] * 1000] = capture
 
     def rows(self, name):
-        return json.loads((self.tables / f"{name}.json").read_text())
+        """A table; logs without point labels do not have all."""
+        file = self.tables / f"{name}.json"
+        return json.loads(file.read_text()) if file.exists() else []
 
     def poses(self, capture):
         """world from ego, ego from sensor."""

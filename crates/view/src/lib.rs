@@ -6,7 +6,8 @@
 //! settings: the same bytes on any number of threads and any machine.
 //!
 //! Every way to show a scene takes a [`ShownScene`] and its [`ShownKeyframe`]s, whatever dialect they
-//! were read from. In pictures, what a voxel looks like is [`Painted`]'s affair; where it stands is
+//! were read from. [`Recording`] lays a scene on a time line for Foxglove and Rerun; [`glb`], [`ply_cubes`]
+//! and [`ply_points`] are for programs that show solids. In pictures, what a voxel looks like is [`Painted`]'s affair; where it stands is
 //! that of [`birds_eye`], [`perspective`] and their siblings.
 //!
 //! ```
@@ -37,6 +38,8 @@ mod picture;
 mod recording;
 mod rows;
 mod shown;
+#[cfg(test)]
+mod testing;
 
 pub use mesh::{glb, ply_cubes, ply_points};
 pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};

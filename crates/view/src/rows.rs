@@ -88,3 +88,41 @@ pub(crate) fn occupied_rows(keyframe: &ShownKeyframe, scene: &ShownScene) -> Row
     }
     rows
 }
+
+#[cfg(test)]
+mod tests {
+    use occlabel_core::{GridSpec, VoxelGrid};
+
+    use super::*;
+    use crate::testing::{shown_keyframe, shown_scene};
+    use crate::{NO_LABEL, ShownEvidence};
+
+    #[test]
+    fn rows_are_the_occupied_voxels_with_what_is_known_of_each() {
+        let spec = GridSpec::new([0.0; 3], [1.0, 1.0, 2.0], [0.5, 1.0, 1.0]).unwrap();
+        let scene = shown_scene();
+        let semantics = VoxelGrid::from_values(&spec, vec![scene.free, 1, NO_LABEL, 0]);
+        let counts = VoxelGrid::from_values(&spec, vec![1, 2, 3, 0x405]);
+        let mut keyframe = shown_keyframe(&spec, semantics);
+        assert_eq!(occupied_rows(&keyframe, &scene).len(), 2);
+        keyframe.instances = Some(VoxelGrid::from_values(&spec, vec![0, 7, 0, 0]));
+        let (hits, crossings) = (counts.clone(), counts.map(|count| count + 1));
+        keyframe.evidence = Some(ShownEvidence { hits, crossings, camera_bits: counts });
+        let rows = occupied_rows(&keyframe, &scene);
+        let names: Vec<_> = rows.columns.iter().map(|(name, _)| *name).collect();
+        let known =
+            ["x", "y", "z", "class", "red", "green", "blue", "alpha", "track", "hits", "crossings"];
+        assert_eq!((names, rows.stride()), (known.to_vec(), 23));
+        let row = |centre: [f32; 3], class: u8, shorts: [u16; 3]| {
+            let [red, green, blue] = scene.palette.color(class);
+            let place = centre.into_iter().flat_map(f32::to_le_bytes);
+            let look = [class, red, green, blue, 255];
+            place
+                .chain(look)
+                .chain(shorts.into_iter().flat_map(u16::to_le_bytes))
+                .collect::<Vec<u8>>()
+        };
+        let first = row([0.25, 0.5, 1.5], 1, [7, 2, 3]);
+        assert_eq!(rows.bytes, [first, row([0.75, 0.5, 1.5], 0, [0, 0x405, 0x406])].concat());
+    }
+}

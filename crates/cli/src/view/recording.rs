@@ -137,8 +137,8 @@ impl Shown<'_> {
         }
         to.keyframe(time, &keyframe, &self.scene)?;
         match &self.logged {
-            Some(logged) => to.boxes(time, &boxes(logged, time)),
-            None => Ok(()),
+            Some(logged) if !logged.scene.tracks.is_empty() => to.boxes(time, &boxes(logged, time)),
+            _ => Ok(()),
         }
     }
 }

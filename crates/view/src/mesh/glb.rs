@@ -173,3 +173,46 @@ fn linear(channel: u8) -> f64 {
         false => libm::pow((share + 0.055) / 1.055, 2.4),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use occlabel_core::{GridSpec, VoxelGrid};
+
+    use super::*;
+    use crate::testing::{shown_keyframe, shown_scene};
+
+    /// The document and the numbers of a file, whose lengths are checked on the way.
+    fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {
+        let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+        assert_eq!((&bytes[..4], number(4), number(8)), (&b"glTF"[..], 2, bytes.len()));
+        let end = 20 + number(12);
+        let document = serde_json::from_slice(&bytes[20..end]).unwrap();
+        let rest = bytes.get(end + 8..).unwrap_or_default();
+        assert!(end % 4 == 0 && (rest.is_empty() || number(end) == rest.len()));
+        (document, rest.to_vec())
+    }
+
+    #[test]
+    fn each_class_is_a_node_of_its_own_under_one_that_turns_the_axes() {
+        let spec = GridSpec::new([0.0; 3], [2.0, 1.0, 1.0], [1.0; 3]).unwrap();
+        let keyframe = shown_keyframe(&spec, VoxelGrid::from_values(&spec, vec![1, 0]));
+        let (document, numbers) = parts(&glb(&keyframe, &shown_scene()));
+        assert_eq!(document["nodes"][0]["children"], json!([1, 2]));
+        assert_eq!([1, 2].map(|at| &document["nodes"][at]["name"]), ["car", "driveable surface"]);
+        let bounds = &document["accessors"][0];
+        assert_eq!(
+            (&bounds["min"], &bounds["max"]),
+            (&json!([1.0, 0.0, 0.0]), &json!([2.0, 1.0, 1.0]))
+        );
+        assert_eq!(numbers.len(), 2 * (6 * 4 * 12 + 6 * 6 * 4));
+    }
+
+    #[test]
+    fn an_empty_grid_is_a_document_without_meshes() {
+        let spec = GridSpec::new([0.0; 3], [1.0; 3], [1.0; 3]).unwrap();
+        let keyframe = shown_keyframe(&spec, VoxelGrid::filled(&spec, 2));
+        let (document, numbers) = parts(&glb(&keyframe, &shown_scene()));
+        assert!(document.get("meshes").is_none() && document.get("buffers").is_none());
+        assert!(numbers.is_empty());
+    }
+}

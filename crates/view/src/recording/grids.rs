@@ -56,3 +56,31 @@ fn look(label: u8, scene: &ShownScene) -> [u8; 5] {
         false => [label, 0, 0, 0, 0],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use occlabel_core::{GridSpec, VoxelGrid, VoxelIndex};
+
+    use super::*;
+    use crate::testing::{shown_keyframe, shown_scene};
+
+    #[test]
+    fn cells_stand_where_the_schema_says_with_their_label_and_color() {
+        let spec = GridSpec::new([1.0, -2.0, 0.0], [4.0, 2.0, 1.0], [1.0, 2.0, 0.5]).unwrap();
+        let numbers = (0..spec.len() as u8).map(|flat| [0, 1, 2, 255][usize::from(flat) % 4]);
+        let semantics = VoxelGrid::from_values(&spec, numbers.collect());
+        let (scene, keyframe) = (shown_scene(), shown_keyframe(&spec, semantics.clone()));
+        let message = grid(Timestamp(1_500_000_000), &keyframe, &scene);
+        assert_eq!(message.timestamp.map(|at| (at.sec(), at.nsec())), Some((1, 500_000_000)));
+        let (slice, row, cell) = (message.slice_stride, message.row_stride, message.cell_stride);
+        for (byte, cells) in (0..).step_by(5).zip(message.data.chunks(5)) {
+            let voxel = [byte % row / cell, byte % slice / row, byte / slice].map(i64::from);
+            let label = semantics.values()[spec.flat(VoxelIndex(voxel)).unwrap()];
+            let [red, green, blue] = scene.palette.color(label);
+            let expected =
+                if label < 2 { [label, red, green, blue, 255] } else { [label, 0, 0, 0, 0] };
+            assert_eq!(cells, expected, "{voxel:?}");
+        }
+        assert_eq!((message.data.len(), message.column_count, message.row_count), (5 * 12, 3, 2));
+    }
+}
