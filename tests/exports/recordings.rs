@@ -137,6 +137,8 @@ fn a_recording_is_a_log_that_we_read() {
 }
 
 #[test]
-fn sweeps_of_no_log_are_refused() {
-    street().view("x.mcap", &["--all-sweeps"]).1.exits(2).tells(&["--input"]);
+fn sweeps_and_settings_of_no_log_are_refused() {
+    let refused = |args: &[&str], told| street().view("x.mcap", args).1.exits(2).tells(&[told]);
+    refused(&["--all-sweeps"], "--input");
+    refused(&["--set", "boxes.max_gap_s=1.0"], "a log to be read by it");
 }

@@ -39,6 +39,10 @@ fn refuse_unused(args: &ViewArgs, ending: &str) -> Result<(), Fault> {
         ("--mesh", args.mesh.is_some(), &["ply"]),
         ("--input", args.log.is_some(), &["mcap", "png"]),
     ];
+    if args.log.is_none() && !args.config.is_empty() {
+        let expected = "--format and --input: a log to be read by it";
+        return Err(Fault::new("flags", "--preset, --config, --set", expected, "no log"));
+    }
     let unused = flags.iter().find(|(_, given, used_by)| *given && !used_by.contains(&ending));
     let Some((flag, _, used_by)) = unused else { return Ok(()) };
     let expected = format!("an output that ends in .{}", used_by.join(" or ."));
