@@ -31,16 +31,13 @@ pub(super) fn sweep(
     let mut rows = Rows::new(POSITION.into_iter().chain(label.into_iter().flatten()));
     for (position, label) in cloud_of.positions.iter().zip(&cloud_of.labels) {
         rows.position(position.coords.into());
-        match label {
-            _ if !header.labelled => {}
-            PointLabel::Class(class) => {
-                rows.byte(class.0);
-                rows.color(palette.color(class.0));
-            }
-            PointLabel::Ignored | PointLabel::Unlabelled => {
-                rows.byte(NO_LABEL);
-                rows.color(GREY);
-            }
+        if header.labelled {
+            let (class, color) = match label {
+                PointLabel::Class(class) => (class.0, palette.color(class.0)),
+                PointLabel::Ignored | PointLabel::Unlabelled => (NO_LABEL, GREY),
+            };
+            rows.byte(class);
+            rows.color(color);
         }
     }
     cloud(header.time, &header.lidar, rows)
