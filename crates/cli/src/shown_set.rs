@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use occlabel_core::{ColorSet, Fault, Palette, Pose};
+use occlabel_core::{ColorSet, Fault, Palette, Pose, Timestamp};
 use occlabel_dialects::{KeyframeKey, LabelSet, Wanted};
 use occlabel_labels::{Manifest, PoseRecord, SceneRecord, read_evidence};
 use occlabel_view::{ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};
@@ -81,6 +81,11 @@ impl ShownSet {
         Ok(keys)
     }
 
+    /// When a keyframe was, if the manifest tells.
+    pub(crate) fn time(&self, key: &KeyframeKey) -> Option<Timestamp> {
+        self.pose(key).map(PoseRecord::time)
+    }
+
     /// All that the files tell of a keyframe.
     ///
     /// # Errors
@@ -91,7 +96,7 @@ impl ShownSet {
         let pose = self.pose(key);
         Ok(ShownKeyframe {
             token: key.token.clone(),
-            time: pose.map(PoseRecord::time),
+            time: self.time(key),
             world_from_grid: pose.map(|pose| self.world_from_grid(pose)),
             evidence: self.evidence(key)?,
             spec: labels.spec,

@@ -52,7 +52,7 @@ mod run_files;
 mod shards;
 mod tree;
 
-pub use atomic::{create_dir, write_file};
+pub use atomic::{create_dir, write_file, write_pieces};
 pub use files::{FileRecord, hash_files};
 pub use inputs::{InputMark, InputRecord, inputs_hash};
 pub use journal::{Journal, JournalEntry};

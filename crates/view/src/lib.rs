@@ -6,8 +6,9 @@
 //! settings: the same bytes on any number of threads and any machine.
 //!
 //! Every way to show a scene takes a [`ShownScene`] and its [`ShownKeyframe`]s, whatever dialect they
-//! were read from. In pictures, what a voxel looks like is [`Painted`]'s affair; where it stands is
-//! that of [`Page`]'s methods, one a kind of picture.
+//! were read from. [`Recording`] lays a scene on a time line for Foxglove and Rerun; [`glb`],
+//! [`ply_cubes`] and [`ply_points`] are for programs that show solids. In pictures, what a voxel looks
+//! like is [`Painted`]'s affair; where it stands is that of [`Page`]'s methods, one a kind of picture.
 //!
 //! ```
 //! use occlabel_core::{GridSpec, Palette, VoxelGrid};
@@ -32,11 +33,18 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod mesh;
 mod picture;
+mod recording;
+mod rows;
 mod shown;
+#[cfg(test)]
+mod testing;
 
+pub use mesh::{glb, ply_cubes, ply_points};
 pub use picture::{
     Across, Aim, BirdsEye, CameraView, Change, ChangeCounts, Difference, Orbit, Page, Painted,
     Strip, birds_eye, perspective, png,
 };
+pub use recording::{EGO, GRID, Recording, ShownBox, WORLD};
 pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

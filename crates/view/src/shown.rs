@@ -22,6 +22,13 @@ pub struct ShownScene {
     pub tracks: Vec<ShownTrack>,
 }
 
+impl ShownScene {
+    /// Whether a value of `semantics` is a class, so that something stands there.
+    pub fn is_occupied(&self, value: u8) -> bool {
+        value != self.free && value != NO_LABEL
+    }
+}
+
 /// A track of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShownTrack {

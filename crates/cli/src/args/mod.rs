@@ -24,7 +24,7 @@ pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use picture::{AcrossArg, PictureArg, PictureArgs};
 pub(crate) use quality::QualityArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
-pub(crate) use view::ViewArgs;
+pub(crate) use view::{MeshArg, ViewArgs};
 
 /// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
 /// drives.

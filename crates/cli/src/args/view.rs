@@ -14,7 +14,7 @@ pub(crate) struct ViewArgs {
     /// The labels: a folder in any dialect.
     #[arg(value_name = "DIR")]
     pub(crate) labels: PathBuf,
-    /// What is made, by its ending: .png.
+    /// What is made, by its ending: .png, .mcap, .ply, .glb.
     #[arg(long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// The dialect of the labels, where they do not tell themselves.
@@ -31,6 +31,14 @@ pub(crate) struct ViewArgs {
     pub(crate) colors: ColorsArg,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+    // .mcap
+    /// .mcap: all sweeps of all lidars, not the keyframes' own alone; needs the log.
+    #[arg(long, requires = "input")]
+    pub(crate) all_sweeps: bool,
+    // .ply
+    /// .ply: what stands for an occupied voxel. [default: points]
+    #[arg(long, value_enum)]
+    pub(crate) mesh: Option<MeshArg>,
     /// The log that the labels were made of: some of what can be shown stands only there.
     #[command(flatten)]
     pub(crate) log: Option<LogArgs>,
@@ -54,4 +62,13 @@ impl From<ColorsArg> for ColorSet {
             ColorsArg::ColorBlind => Self::ColorBlind,
         }
     }
+}
+
+/// What stands for an occupied voxel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MeshArg {
+    /// Its centre.
+    Points,
+    /// Its faces, those of one track or class joined.
+    Cubes,
 }

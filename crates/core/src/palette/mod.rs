@@ -54,6 +54,11 @@ impl Palette {
         }
     }
 
+    /// The name of a class.
+    pub fn name(&self, id: u8) -> Option<&str> {
+        self.classes.get(usize::from(id)).map(|(name, _)| name.as_str())
+    }
+
     /// The name of a class, as a reader likes it.
     pub fn label(&self, id: u8) -> String {
         match self.classes.get(usize::from(id)) {
