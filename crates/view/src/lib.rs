@@ -32,8 +32,10 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod page;
 mod picture;
 mod shown;
 
+pub use page::{PageKeyframe, page};
 pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
 pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

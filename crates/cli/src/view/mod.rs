@@ -1,5 +1,6 @@
 //! `view`: labels as one can look at them, by the ending of the file that is made.
 
+mod page;
 mod pictures;
 
 use occlabel_core::Fault;
@@ -12,6 +13,7 @@ use crate::shown_set::ShownSet;
 pub(crate) fn run(args: &ViewArgs, console: &Console) -> Result<Outcome, Stop> {
     let ending = args.output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let make = match ending {
+        "html" => page::make,
         "png" => pictures::make,
         _ => return Err(Stop::usage(unknown_ending(args))),
     };
@@ -24,5 +26,5 @@ pub(crate) fn run(args: &ViewArgs, console: &Console) -> Result<Outcome, Stop> {
 
 fn unknown_ending(args: &ViewArgs) -> Fault {
     let place = args.output.display().to_string();
-    Fault::new("output", place, "a file that ends in .png", "another ending")
+    Fault::new("output", place, "a file that ends in .html or .png", "another ending")
 }

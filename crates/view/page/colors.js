@@ -1,0 +1,75 @@
+// What colour a voxel has, by what one wants to see.
+
+export const PAPER = [27, 31, 38];
+const HIDDEN = [54, 60, 71];
+const FREE = [88, 97, 112];
+const UNOBSERVED = [20, 23, 29];
+const NOTHING = [58, 64, 75];
+/** Viridis at nine even steps. */
+const RAMP = ["440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725"]
+    .map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)));
+
+/** `a` with a share (0 to 1) of `b` in it. */
+export function mix(a, b, share) {
+    return a.map((channel, i) => Math.round(channel + (b[i] - channel) * share));
+}
+
+/** The colour at a share (0 to 1) of the ramp. */
+export function ramp(share) {
+    const at = Math.min(Math.max(share, 0), 1) * (RAMP.length - 1);
+    const low = Math.min(Math.floor(at), RAMP.length - 2);
+    return mix(RAMP[low], RAMP[low + 1], at - low);
+}
+
+/** Share of the ramp of a count, on a logarithmic scale from 1 to `most`. */
+export function logShare(count, most) {
+    return Math.log(Math.max(count, 1)) / Math.log(Math.max(most, 2));
+}
+
+/** A colour of its own for each track, spread around the circle. */
+export function trackColor(index) {
+    if (index === 0) return NOTHING;
+    const hue = (index * 137.508) % 360;
+    const channel = (n) => {
+        const k = (n + hue / 30) % 12;
+        return Math.round(255 * (0.6 - 0.35 * Math.max(-1, Math.min(k - 3, 9 - k, 1))));
+    };
+    return [channel(0), channel(8), channel(4)];
+}
+
+/**
+ * The ways to colour a keyframe's voxels: by key, a name, the arrays that it needs, and `of(flat)`.
+ * Ways with `most` have a colour bar from 1 to that count.
+ */
+export function waysToColor(scene, keyframe, view) {
+    const classes = scene.colors[view.colors];
+    const byCount = (name) => (flat) =>
+        keyframe[name][flat] === 0 ? NOTHING : ramp(logShare(keyframe[name][flat], scene.most[name]));
+    const ways = [
+        ["class", "class", ["semantics"], (flat) => classes[keyframe.semantics[flat]] ?? NOTHING],
+        ["height", "height", ["semantics"], (flat) => ramp((flat % keyframe.shape[2]) / (keyframe.shape[2] - 1 || 1))],
+        ["track", "track", ["instances"], (flat) => trackColor(keyframe.instances[flat])],
+        ["hits", "hits", ["hits"], byCount("hits"), scene.most?.hits],
+        ["crossings", "crossings", ["crossings"], byCount("crossings"), scene.most?.crossings],
+        ...scene.cameras.map((name, bit) => [`camera${bit}`, `seen by ${name}`, ["camera_bits"], (flat) =>
+            (keyframe.camera_bits[flat] >> bit) & 1 ? mix(classes[keyframe.semantics[flat]] ?? FREE, [255, 255, 255], 0.12) : NOTHING]),
+    ];
+    const named = ways.map(([key, name, needs, of, most]) => ({ key, name, needs, of, most }));
+    return named.filter(({ needs }) => needs.every((array) => keyframe.has(array)));
+}
+
+/** Colours of occupied voxels: what no camera sees is dull, unless the view says otherwise. */
+export function cubeColor(keyframe, view, way) {
+    if (view.cameras !== "dull" || !keyframe.hasCameras() || way.key.startsWith("camera")) return way.of;
+    return (flat) => (keyframe.isHidden(flat) ? mix(way.of(flat), HIDDEN, 0.58) : way.of(flat));
+}
+
+/** Colour and opacity (0 to 255) in a slice, where what is free or unobserved shows as well. */
+export function sliceColor(keyframe, way) {
+    const showsFree = way.key === "crossings" || way.key.startsWith("camera");
+    return (flat) => {
+        if (keyframe.isOccupied(flat)) return [...way.of(flat), 255];
+        if (!keyframe.isObserved(flat)) return [...UNOBSERVED, 205];
+        return showsFree ? [...way.of(flat), 235] : [...FREE, 215];
+    };
+}
