@@ -1,7 +1,8 @@
-// Flow: where things will be in a second.
+// Flow: where things will be in half a second.
 
 import { centreOf, voxelAt } from "./voxels.js";
 
+const AHEAD_S = 0.5;
 const SLOWEST_MPS = 0.3;
 const LIFT_M = 0.4;
 const COLOR = 0xfff3c4;
@@ -24,7 +25,7 @@ export class Arrows extends THREE.Group {
         const material = new THREE.MeshBasicMaterial({ color: COLOR });
         const [shafts, heads] = this.parts.map((part) => new THREE.InstancedMesh(part, material, arrows.length));
         arrows.forEach(({ from, flow }, at) => {
-            const [start, way] = [new THREE.Vector3(...from), new THREE.Vector3(...flow)];
+            const [start, way] = [new THREE.Vector3(...from), new THREE.Vector3(...flow).multiplyScalar(AHEAD_S)];
             const turn = new THREE.Quaternion().setFromUnitVectors(UP, way.clone().normalize());
             const body = new THREE.Vector3(1, Math.max(way.length() - 0.8, 0.05), 1);
             shafts.setMatrixAt(at, new THREE.Matrix4().compose(start, turn, body));

@@ -3,7 +3,9 @@
 export const PAPER = [27, 31, 38];
 const HIDDEN = [54, 60, 71];
 const FREE = [88, 97, 112];
+const SEEN_FREE = [150, 163, 184];
 const UNOBSERVED = [20, 23, 29];
+export const UNNAMED = [120, 120, 120];
 const NOTHING = [58, 64, 75];
 /** Viridis at nine even steps. */
 const RAMP = ["440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725"]
@@ -38,38 +40,51 @@ export function trackColor(index) {
 }
 
 /**
- * The ways to colour a keyframe's voxels: by key, a name, the arrays that it needs, and `of(flat)`.
+ * The ways to colour a keyframe's voxels: a key, a name, the array that it needs, and `of(flat)`.
  * Ways with `most` have a colour bar from 1 to that count.
  */
 export function waysToColor(scene, keyframe, view) {
     const classes = scene.colors[view.colors];
     const byCount = (name) => (flat) =>
         keyframe[name][flat] === 0 ? NOTHING : ramp(logShare(keyframe[name][flat], scene.most[name]));
+    const byClass = (flat) => classes[keyframe.semantics[flat]] ?? UNNAMED;
+    const layers = Math.max(keyframe.shape[2] - 1, 1);
+    const byHeight = (flat) => ramp((flat % keyframe.shape[2]) / layers);
+    const byCamera = (bit) => (flat) => ((keyframe.camera_bits[flat] >> bit) & 1 ? byClass(flat) : NOTHING);
     const ways = [
-        ["class", "class", ["semantics"], (flat) => classes[keyframe.semantics[flat]] ?? NOTHING],
-        ["height", "height", ["semantics"], (flat) => ramp((flat % keyframe.shape[2]) / (keyframe.shape[2] - 1 || 1))],
-        ["track", "track", ["instances"], (flat) => trackColor(keyframe.instances[flat])],
-        ["hits", "hits", ["hits"], byCount("hits"), scene.most?.hits],
-        ["crossings", "crossings", ["crossings"], byCount("crossings"), scene.most?.crossings],
-        ...scene.cameras.map((name, bit) => [`camera${bit}`, `seen by ${name}`, ["camera_bits"], (flat) =>
-            (keyframe.camera_bits[flat] >> bit) & 1 ? mix(classes[keyframe.semantics[flat]] ?? FREE, [255, 255, 255], 0.12) : NOTHING]),
+        { key: "class", needs: "semantics", of: byClass, dulls: true },
+        { key: "height", needs: "semantics", of: byHeight, dulls: true },
+        { key: "track", needs: "instances", of: (flat) => trackColor(keyframe.instances[flat]), dulls: true },
+        { key: "hits", needs: "hits", of: byCount("hits"), most: scene.most.hits },
+        { key: "crossings", needs: "crossings", of: byCount("crossings"), most: scene.most.crossings },
+        ...scene.cameras.map((name, bit) =>
+            ({ key: `camera${bit}`, name: `what ${name} sees`, needs: "camera_bits", of: byCamera(bit) })),
     ];
-    const named = ways.map(([key, name, needs, of, most]) => ({ key, name, needs, of, most }));
-    return named.filter(({ needs }) => needs.every((array) => keyframe.has(array)));
+    return ways.filter(({ needs }) => keyframe.has(needs)).map((way) => ({ name: `by ${way.key}`, ...way }));
 }
 
-/** Colours of occupied voxels: what no camera sees is dull, unless the view says otherwise. */
+/**
+ * Colours of occupied voxels: what no camera sees is dull, unless the view says otherwise, or the colour
+ * is to be read off a bar.
+ */
 export function cubeColor(keyframe, view, way) {
-    if (view.cameras !== "dull" || !keyframe.hasCameras() || way.key.startsWith("camera")) return way.of;
+    if (view.cameras !== "dull" || !keyframe.hasCameras() || !way.dulls) return way.of;
     return (flat) => (keyframe.isHidden(flat) ? mix(way.of(flat), HIDDEN, 0.58) : way.of(flat));
 }
 
 /** Colour and opacity (0 to 255) in a slice, where what is free or unobserved shows as well. */
 export function sliceColor(keyframe, way) {
-    const showsFree = way.key === "crossings" || way.key.startsWith("camera");
+    const free = way.key === "crossings" ? way.of : freeIn(keyframe, way);
     return (flat) => {
         if (keyframe.isOccupied(flat)) return [...way.of(flat), 255];
         if (!keyframe.isObserved(flat)) return [...UNOBSERVED, 205];
-        return showsFree ? [...way.of(flat), 235] : [...FREE, 215];
+        return [...free(flat), 225];
     };
+}
+
+/** Free voxels that a camera sees are lighter, where it is that camera's that are shown. */
+function freeIn(keyframe, { key }) {
+    if (!key.startsWith("camera")) return () => FREE;
+    const bit = Number(key.slice("camera".length));
+    return (flat) => ((keyframe.camera_bits[flat] >> bit) & 1 ? SEEN_FREE : FREE);
 }

@@ -30,10 +30,10 @@ export class Controls {
         if (!this.isFlying || buttons !== 1 || pointerType === "touch") return;
         const way = this.target.clone().sub(this.camera.position);
         const side = way.clone().cross(this.camera.up).normalize();
-        const turned = way.clone().applyAxisAngle(side, -movementY * RADIANS_PER_PIXEL);
-        const isUpright = turned.clone().normalize().cross(this.camera.up).length() > 0.05;
-        (isUpright ? turned : way.copy(turned)).applyAxisAngle(this.camera.up, -movementX * RADIANS_PER_PIXEL);
-        if (isUpright) this.target.copy(this.camera.position).add(turned);
+        const nodded = way.clone().applyAxisAngle(side, -movementY * RADIANS_PER_PIXEL);
+        const isUpright = nodded.angleTo(this.camera.up) > 0.05 && nodded.angleTo(this.camera.up) < Math.PI - 0.05;
+        const turned = (isUpright ? nodded : way).applyAxisAngle(this.camera.up, -movementX * RADIANS_PER_PIXEL);
+        this.target.copy(this.camera.position).add(turned);
         this.orbit.update();
     }
 
@@ -88,12 +88,12 @@ export function presetsOf({ min_m, size_m, shape }) {
     const ground = Math.min(Math.max(0, min_m[2]), min_m[2] + span[2]);
     const centre = [x, y, ground];
     return {
-        corner: [[x - 0.62 * long, y - 0.5 * wide, ground + 0.55 * reach], [x + 0.02 * long, y + 0.02 * wide, ground]],
-        top: [[x - 0.001, y, ground + 1.12 * reach], centre],
-        behind: [[x - 0.5 * long, y, ground + 0.2 * reach], [x + 0.06 * long, y, ground]],
-        left: [[x, y + 0.95 * wide, ground + 0.3 * reach], centre],
-        right: [[x, y - 0.95 * wide, ground + 0.3 * reach], centre],
-        front: [[x + 0.78 * long, y, ground + 0.3 * reach], centre],
+        corner: [[x - 0.95 * long, y - 0.72 * wide, ground + 0.8 * reach], centre],
+        top: [[x - 0.001, y, ground + 1.5 * reach], centre],
+        behind: [[x - 0.8 * long, y, ground + 0.36 * reach], [x + 0.05 * long, y, ground]],
+        left: [[x, y + 1.25 * wide, ground + 0.45 * reach], centre],
+        right: [[x, y - 1.25 * wide, ground + 0.45 * reach], centre],
+        front: [[x + 1.2 * long, y, ground + 0.45 * reach], centre],
         ego: [[-9, 0, 5.5], [12, 0, 0]],
     };
 }

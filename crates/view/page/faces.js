@@ -36,6 +36,28 @@ function eachFace(shown, shape, strides, each) {
     }
 }
 
+/**
+ * How open the corners of a face are, 0 to 3 each, two bits a corner: what stands beside the air in front
+ * of it keeps light away. Corners turn with the axes after the face's own: (0, 0), (1, 0), (1, 1), (0, 1).
+ */
+export function openCorners(shown, shape, { axis, sign }, voxel) {
+    const stands = (a, b) => standsBeside(shown, shape, voxel, axis, [sign, a, b]);
+    const [left, right, below, above] = [stands(-1, 0), stands(1, 0), stands(0, -1), stands(0, 1)];
+    const open = (side, other, a, b) => (side && other ? 0 : 3 - side - other - stands(a, b));
+    const corners = [open(left, below, -1, -1), open(right, below, 1, -1), open(right, above, 1, 1), open(left, above, -1, 1)];
+    return corners.reduce((bits, corner, at) => bits | (corner << (2 * at)), 0);
+}
+
+function standsBeside(shown, shape, voxel, axis, steps) {
+    const beside = [0, 0, 0];
+    for (let i = 0; i < 3; i++) {
+        const along = (axis + i) % 3;
+        beside[along] = voxel[along] + steps[i];
+        if (beside[along] < 0 || beside[along] >= shape[along]) return 0;
+    }
+    return shown[(beside[0] * shape[1] + beside[1]) * shape[2] + beside[2]];
+}
+
 /** How many of a direction's faces an eye may see, that stands at `eye` in voxel units along its axis. */
 export function facesBefore({ upTo }, { sign }, eye) {
     const layers = upTo.length - 1;

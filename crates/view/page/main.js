@@ -17,17 +17,19 @@ import { centreOf, shownVoxels, tally, voxelAt } from "./voxels.js";
 const PRESET_KEYS = ["Digit1", "Digit2", "Digit3", "Digit4", "Digit5", "Digit6", "Digit7"];
 /** A click is a press that moved by fewer pixels. */
 const CLICK_PX = 5;
+const FOV_DEG = 40;
 /** Where the labels do not tell the time: keyframes a second when played. */
 const PLAYED_HZ = 2;
 
 class Viewer {
     constructor(scene, textOf) {
-        this.scene = { ...scene, most: mostOf(scene) };
+        const occurs = [...new Set(scene.keyframes.flatMap(({ classes }) => classes))].sort((a, b) => a - b);
+        this.scene = { ...scene, most: mostOf(scene), occurs };
         this.keyframes = new Keyframes(this.scene, textOf);
         this.canvas = document.getElementById("canvas");
         this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
         this.renderer.setClearColor(new THREE.Color().setRGB(...PAPER.map((c) => c / 255), THREE.SRGBColorSpace));
-        this.camera = new THREE.PerspectiveCamera(45, 1, 0.3, 2000);
+        this.camera = new THREE.PerspectiveCamera(FOV_DEG, 1, 0.3, 2000);
         this.camera.up.set(0, 0, 1);
         this.world = new THREE.Scene();
         [this.cubes, this.slice, this.arrows] = [new Cubes(), new Slice(), new Arrows()];
@@ -135,7 +137,7 @@ class Viewer {
     }
 
     show(keyframe, way) {
-        if (this.keyframe !== keyframe) this.counts = countsOfClasses(keyframe, this.scene);
+        if (this.keyframe !== keyframe) this.counts = tally(keyframe);
         this.keyframe = keyframe;
         this.shown = shownVoxels(keyframe, this.view);
         this.cubes.show(keyframe, this.shown, cubeColor(keyframe, this.view, way));
@@ -159,7 +161,7 @@ class Viewer {
         this.labels.place(this.camera, this.keyframe, this.view.lines, this.canvas);
         const distance_m = this.camera.position.distanceTo(this.controls.target);
         const height_m = 2 * distance_m * Math.tan((this.camera.fov * Math.PI) / 360);
-        this.panel.showScale(this.canvas.clientHeight / height_m);
+        this.panel.showScale(this.camera.view.fullHeight / height_m);
         this.writeHash();
     }
 
@@ -190,11 +192,12 @@ class Viewer {
         const [width, height] = [innerWidth, innerHeight];
         this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
         this.renderer.setSize(width, height, false);
-        this.camera.aspect = width / height;
+        const { left, bottom } = this.panel.room(width, height);
+        this.camera.aspect = left / bottom;
         // As much is seen across a narrow window as across a square one.
-        const half = Math.tan((45 * Math.PI) / 360) / Math.min(this.camera.aspect, 1);
+        const half = Math.tan((FOV_DEG * Math.PI) / 360) / Math.min(this.camera.aspect, 1);
         this.camera.fov = (2 * Math.atan(half) * 180) / Math.PI;
-        this.camera.updateProjectionMatrix();
+        this.camera.setViewOffset(left, bottom, 0, 0, width, height);
         this.wake();
     }
 
@@ -261,13 +264,6 @@ class Viewer {
 function mostOf({ keyframes }) {
     const most = (name) => Math.max(0, ...keyframes.map((keyframe) => keyframe.most[name] ?? 0));
     return { hits: most("hits"), crossings: most("crossings") };
-}
-
-/** The tally of a keyframe, with the ids that have no name. */
-function countsOfClasses(keyframe, scene) {
-    const counts = tally(keyframe);
-    const ids = [...counts.classes.keys()];
-    return { ...counts, others: ids.filter((id) => counts.classes[id] > 0 && id >= scene.classes.length) };
 }
 
 /** Lines around the picked voxel, seen through all. */

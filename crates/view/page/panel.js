@@ -1,6 +1,6 @@
 // The page's controls: they tell the viewer what to show, and show what it shows.
 
-import { logShare, ramp } from "./colors.js";
+import { logShare, ramp, UNNAMED } from "./colors.js";
 import { presetsOf } from "./controls.js";
 import { NO_LABEL } from "./keyframes.js";
 
@@ -56,7 +56,7 @@ export class Panel {
         }
         for (const id of ["flow", "lines"]) $(id).onchange = () => viewer.set({ [id]: $(id).checked });
         $("all").onclick = () => viewer.set({ off: new Set() });
-        $("none").onclick = () => viewer.set({ off: new Set(viewer.scene.classes.keys()) });
+        $("none").onclick = () => viewer.set({ off: new Set(viewer.scene.occurs) });
         $("fly").onchange = () => viewer.controls.fly($("fly").checked);
         for (const button of $("slice-axis").children) button.onclick = () => this.sliceAcross(button.dataset.axis);
         $("slice-at").oninput = () => viewer.set({ slice: { ...viewer.view.slice, at: $("slice-at").valueAsNumber } });
@@ -88,7 +88,7 @@ export class Panel {
         $("keyframe-name").textContent = keyframe.token;
         $("at").value = view.at;
         $("at-text").textContent = this.timeText(keyframe, view.at);
-        $("by").replaceChildren(...ways.map(({ key, name }) => element("option", `by ${name}`, { value: key })));
+        $("by").replaceChildren(...ways.map(({ key, name }) => element("option", name, { value: key })));
         for (const id of ["by", "colors", "cameras", "lidar"]) $(id).value = view[id];
         for (const id of ["flow", "lines"]) $(id).checked = view[id];
         $("cameras-row").hidden = !keyframe.hasCameras();
@@ -122,9 +122,8 @@ export class Panel {
     }
 
     updateClasses(scene, view, counts) {
-        const rows = scene.classes.map((name, id) => ({ id, name, color: scene.colors[view.colors][id] }));
-        const others = counts.others.map((id) => ({ id, name: `class ${id}`, color: [120, 120, 120] }));
-        $("classes").replaceChildren(...[...rows, ...others].map((row) => this.classRow(row, view, counts)));
+        const row = (id) => ({ id, name: scene.classes[id] ?? `class ${id}`, color: scene.colors[view.colors][id] ?? UNNAMED });
+        $("classes").replaceChildren(...scene.occurs.map((id) => this.classRow(row(id), view, counts)));
     }
 
     classRow({ id, name, color }, view, counts) {
@@ -176,6 +175,13 @@ export class Panel {
     say(text) {
         $("message").hidden = !text;
         $("message").textContent = text;
+    }
+
+    /** How much of a window is not under the controls, from its upper left corner. */
+    room(width, height) {
+        const side = $("panel").getBoundingClientRect();
+        const isBeside = side.width > 0 && width > 720;
+        return { left: isBeside ? side.left : width, bottom: height - 60 };
     }
 
     leftOut(text) {

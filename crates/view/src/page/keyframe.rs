@@ -1,6 +1,6 @@
 //! A keyframe as the page holds it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use occlabel_core::VoxelGrid;
 use serde::Serialize;
@@ -36,6 +36,8 @@ pub(crate) struct About {
     shape: [usize; 3],
     /// The arrays that there are.
     arrays: Vec<&'static str>,
+    /// The classes that occur.
+    classes: BTreeSet<u8>,
     /// The largest hits and crossings.
     most: BTreeMap<&'static str, u16>,
 }
@@ -44,7 +46,7 @@ impl PageKeyframe {
     /// Makes the arrays of a keyframe small. `free` is [`ShownScene::free`](crate::ShownScene::free).
     pub fn of(keyframe: &ShownKeyframe, free: u8) -> Self {
         let arrays = arrays(keyframe, free);
-        Self { about: About::of(keyframe, &arrays), arrays }
+        Self { about: About::of(keyframe, &arrays, free), arrays }
     }
 
     /// How many bytes of the page each array takes.
@@ -59,7 +61,7 @@ impl PageKeyframe {
 }
 
 impl About {
-    fn of(keyframe: &ShownKeyframe, arrays: &[PageArray]) -> Self {
+    fn of(keyframe: &ShownKeyframe, arrays: &[PageArray], free: u8) -> Self {
         let spec = &keyframe.spec;
         let pose = keyframe.world_from_grid.map(|pose| {
             let ([x, y, z], q) = (pose.translation.vector.into(), pose.rotation.coords);
@@ -73,6 +75,7 @@ impl About {
             size_m: spec.size_m().into(),
             shape: spec.shape(),
             arrays: arrays.iter().map(|array| array.name).collect(),
+            classes: classes(keyframe, free),
             most: keyframe.evidence.as_ref().map(most).unwrap_or_default(),
         }
     }
@@ -129,6 +132,12 @@ fn evidence_arrays(keyframe: &ShownKeyframe, evidence: &ShownEvidence, free: u8)
         PageArray::counts("hits", &evidence.hits, occupied),
         PageArray::counts("crossings", &evidence.crossings, observed),
     ]
+}
+
+fn classes(keyframe: &ShownKeyframe, free: u8) -> BTreeSet<u8> {
+    let mut occurs = [false; 256];
+    keyframe.semantics.values().iter().for_each(|&class| occurs[usize::from(class)] = true);
+    (0..NO_LABEL).filter(|&class| occurs[usize::from(class)] && class != free).collect()
 }
 
 fn most(evidence: &ShownEvidence) -> BTreeMap<&'static str, u16> {
