@@ -4,6 +4,7 @@ export const PAPER = [27, 31, 38];
 const HIDDEN = [54, 60, 71];
 const FREE = [88, 97, 112];
 const SEEN_FREE = [150, 163, 184];
+const UNOBSERVED_POINT = [150, 96, 110, 70];
 const UNOBSERVED = [20, 23, 29];
 export const UNNAMED = [120, 120, 120];
 const NOTHING = [58, 64, 75];
@@ -80,6 +81,17 @@ export function sliceColor(keyframe, way) {
         if (!keyframe.isObserved(flat)) return [...UNOBSERVED, 205];
         return [...free(flat), 225];
     };
+}
+
+/** Colour and opacity (0 to 255) of free voxels as points. */
+export function freeColor(keyframe, way) {
+    const free = way.key === "crossings" ? way.of : freeIn(keyframe, way);
+    return (flat) => [...free(flat), 150];
+}
+
+/** Colour and opacity of unobserved voxels as points. */
+export function unobservedColor() {
+    return UNOBSERVED_POINT;
 }
 
 /** Free voxels that a camera sees are lighter, where it is that camera's that are shown. */

@@ -7,6 +7,7 @@ export function hashOf(view, controls) {
     if (view.off.size > 0) parts.set("off", [...view.off].join());
     if (view.cameras !== "dull") parts.set("cameras", view.cameras);
     if (view.lidar !== "all") parts.set("lidar", view.lidar);
+    for (const name of ["free", "unobserved"]) if (view[name]) parts.set(name, "1");
     if (!view.flow) parts.set("flow", "0");
     if (!view.lines) parts.set("lines", "0");
     if (view.slice.axis !== null) parts.set("slice", [view.slice.axis, view.slice.at].join());
@@ -28,6 +29,8 @@ export function viewOf(hash, scene) {
         cameras: one("cameras", ["dull", "all", "only"]),
         lidar: one("lidar", ["all", "only"]),
         off: new Set(numbers("off").filter((id) => id >= 0 && id < 255)),
+        free: parts.get("free") === "1",
+        unobserved: parts.get("unobserved") === "1",
         flow: parts.get("flow") !== "0",
         lines: parts.get("lines") !== "0",
         slice: sliceOf(numbers("slice"), scene),

@@ -1,7 +1,7 @@
 // The viewer: it holds what is to be shown, and shows it.
 
 import { Arrows } from "./arrows.js";
-import { cubeColor, PAPER, sliceColor, waysToColor } from "./colors.js";
+import { cubeColor, freeColor, PAPER, sliceColor, unobservedColor, waysToColor } from "./colors.js";
 import { Controls, presetsOf } from "./controls.js";
 import { Cubes } from "./cubes.js";
 import { factsOf } from "./facts.js";
@@ -10,6 +10,7 @@ import { Keyframes } from "./keyframes.js";
 import { Labels } from "./labels.js";
 import { Panel } from "./panel.js";
 import { firstOnRay } from "./pick.js";
+import { VoxelPoints } from "./points.js";
 import { Slice } from "./slice.js";
 import { Surroundings } from "./surroundings.js";
 import { centreOf, shownVoxels, tally, voxelAt } from "./voxels.js";
@@ -33,8 +34,10 @@ class Viewer {
         this.camera.up.set(0, 0, 1);
         this.world = new THREE.Scene();
         [this.cubes, this.slice, this.arrows] = [new Cubes(), new Slice(), new Arrows()];
+        [this.free, this.unobserved] = [new VoxelPoints(), new VoxelPoints()];
         [this.surroundings, this.frame] = [new Surroundings(), frameOfPick()];
         this.world.add(this.surroundings, this.cubes, this.slice, this.arrows, this.frame);
+        this.world.add(this.free, this.unobserved);
         this.controls = new Controls(this.camera, this.canvas, () => this.wake());
         this.labels = new Labels(document.getElementById("labels"));
         this.panel = new Panel(this);
@@ -115,8 +118,14 @@ class Viewer {
         this.wake();
     }
 
-    /** Decodes what is to be shown, and shows it unless something else was asked for meanwhile. */
-    async draw() {
+    /** Decodes what is to be shown, and shows it; `settled` when that is done. */
+    draw() {
+        this.settled = this.drawNow();
+        return this.settled;
+    }
+
+    /** Shows nothing if something else was asked for meanwhile. */
+    async drawNow() {
         const turn = ++this.turn;
         const begun = performance.now();
         const keyframe = await this.keyframes.get(this.view.at);
@@ -128,12 +137,13 @@ class Viewer {
         const decoded = performance.now();
         this.show(keyframe, way);
         this.panel.update({ keyframe, view: this.view, ways, counts: this.counts, scene: this.scene });
-        this.pick(this.picked);
         const shown = performance.now();
         this.render();
         const drawn = performance.now();
         this.times_ms = { decode: decoded - begun, show: shown - decoded, draw: drawn - shown };
+        this.first_ms ??= drawn;
         this.fetchAround();
+        await this.pick(this.picked);
     }
 
     show(keyframe, way) {
@@ -142,10 +152,24 @@ class Viewer {
         this.shown = shownVoxels(keyframe, this.view);
         this.cubes.show(keyframe, this.shown, cubeColor(keyframe, this.view, way));
         this.slice.show(keyframe, this.view.slice, sliceColor(keyframe, way));
+        this.showPoints(keyframe, way);
         this.arrows.show(keyframe);
         this.arrows.visible = this.view.flow;
         this.surroundings.show(keyframe);
         this.surroundings.visible = this.view.lines;
+    }
+
+    showPoints(keyframe, way) {
+        const { slice, free, unobserved } = this.view;
+        const isFree = (flat) => keyframe.isObserved(flat) && !keyframe.isOccupied(flat);
+        const isUnknown = (flat) => !keyframe.isObserved(flat) && !keyframe.isOccupied(flat);
+        const none = () => false;
+        const thinned = [
+            this.free.show(keyframe, slice, free ? isFree : none, freeColor(keyframe, way)),
+            this.unobserved.show(keyframe, slice, unobserved ? isUnknown : none, unobservedColor),
+        ];
+        const every = Math.max(...thinned);
+        this.panel.leftOut(every > 1 ? `Of the points, one in ${every} is shown.` : "");
     }
 
     /** What will probably be asked for next. */
@@ -157,6 +181,9 @@ class Viewer {
 
     render() {
         this.cubes.faceEye(this.camera.position);
+        for (const points of [this.free, this.unobserved]) {
+            points.material.uniforms.pixels.value = this.camera.projectionMatrix.elements[5] * this.canvas.height / 2;
+        }
         this.renderer.render(this.world, this.camera);
         this.labels.place(this.camera, this.keyframe, this.view.lines, this.canvas);
         const distance_m = this.camera.position.distanceTo(this.controls.target);
@@ -168,9 +195,14 @@ class Viewer {
     writeHash() {
         clearTimeout(this.writing);
         this.writing = setTimeout(() => {
-            this.written = hashOf(this.view, this.controls);
+            this.written = this.address();
             history.replaceState(null, "", this.written);
         }, 250);
+    }
+
+    /** The fragment that shows this again. */
+    address() {
+        return hashOf(this.view, this.controls);
     }
 
     /** Draws at the next frame, and goes on as long as something moves. */
@@ -237,8 +269,13 @@ class Viewer {
         return this.shown[flat] === 1 || (axis !== null && voxelAt(this.keyframe.shape, flat)[axis] === at);
     }
 
-    /** Shows the facts of a voxel, or none. */
-    async pick(flat) {
+    /** Shows the facts of a voxel, or none; `settled` when that is done. */
+    pick(flat) {
+        this.settled = this.pickNow(flat);
+        return this.settled;
+    }
+
+    async pickNow(flat) {
         this.picked = flat;
         this.frame.visible = flat !== null;
         if (flat === null) {

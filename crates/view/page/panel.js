@@ -2,7 +2,9 @@
 
 import { logShare, ramp, UNNAMED } from "./colors.js";
 import { presetsOf } from "./controls.js";
-import { NO_LABEL } from "./keyframes.js";
+
+const CHOICES = ["by", "colors", "cameras", "lidar"];
+const CHECKS = ["flow", "lines", "free", "unobserved"];
 
 const $ = (id) => document.getElementById(id);
 const css = (color) => `rgb(${color.join()})`;
@@ -51,10 +53,10 @@ export class Panel {
 
     listen() {
         const { viewer } = this;
-        for (const id of ["by", "colors", "cameras", "lidar"]) {
+        for (const id of CHOICES) {
             $(id).onchange = () => viewer.set({ [id]: $(id).value });
         }
-        for (const id of ["flow", "lines"]) $(id).onchange = () => viewer.set({ [id]: $(id).checked });
+        for (const id of CHECKS) $(id).onchange = () => viewer.set({ [id]: $(id).checked });
         $("all").onclick = () => viewer.set({ off: new Set() });
         $("none").onclick = () => viewer.set({ off: new Set(viewer.scene.occurs) });
         $("fly").onchange = () => viewer.controls.fly($("fly").checked);
@@ -89,8 +91,8 @@ export class Panel {
         $("at").value = view.at;
         $("at-text").textContent = this.timeText(keyframe, view.at);
         $("by").replaceChildren(...ways.map(({ key, name }) => element("option", name, { value: key })));
-        for (const id of ["by", "colors", "cameras", "lidar"]) $(id).value = view[id];
-        for (const id of ["flow", "lines"]) $(id).checked = view[id];
+        for (const id of CHOICES) $(id).value = view[id];
+        for (const id of CHECKS) $(id).checked = view[id];
         $("cameras-row").hidden = !keyframe.hasCameras();
         $("lidar-row").hidden = !keyframe.has("mask_lidar");
         $("masks").hidden = $("cameras-row").hidden && $("lidar-row").hidden;
@@ -150,12 +152,7 @@ export class Panel {
             $("slice-at").value = at;
             $("slice-m").textContent = `${"xyz"[axis]} ${(min_m[axis] + (at + 0.5) * size_m[axis]).toFixed(2)} m`;
         }
-        const rows = [["free", [88, 97, 112], counts.free], ["unobserved", [20, 23, 29], counts.unobserved]];
-        $("states").replaceChildren(...rows.map(([name, color, count]) => {
-            const row = element("li");
-            row.append(swatch(color), element("span", name, { className: "name" }), element("span", number(count), { className: "count" }));
-            return row;
-        }));
+        for (const state of ["free", "unobserved"]) $(`${state}-count`).textContent = number(counts[state]);
     }
 
     /** Shows the facts of a voxel, or that none is picked. */

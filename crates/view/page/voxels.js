@@ -32,8 +32,8 @@ export function tally(keyframe) {
 }
 
 /**
- * 1 where an occupied voxel is shown. `view` has `off` (set of classes), `cameras` and `lidar` (`only`
- * leaves out what they do not see), and `slice`, behind which nothing is left out.
+ * 1 where an occupied voxel is shown. `view` has `off` (classes that are not), `cameras` and `lidar`
+ * (`only` leaves out what they do not see), and the `slice`, which keeps what is below or beyond it.
  */
 export function shownVoxels(keyframe, view) {
     const { shape, semantics } = keyframe;
@@ -54,8 +54,8 @@ export function shownVoxels(keyframe, view) {
     return shown;
 }
 
-/** For each axis, 1 where the slice leaves voxels: below it, or beyond it as one looks along x or y. */
-function keptBySlice(shape, slice) {
+/** For each axis, 1 where a slice leaves voxels: below it, or beyond it as one looks along x or y. */
+export function keptBySlice(shape, slice) {
     const all = shape.map((n) => new Uint8Array(n).fill(1));
     if (slice.axis === 2) all[2].fill(0, slice.at);
     else if (slice.axis !== null) all[slice.axis].fill(0, 0, slice.at + 1);

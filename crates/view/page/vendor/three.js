@@ -20,6 +20,7 @@ export {
     MeshBasicMaterial,
     NearestFilter,
     PerspectiveCamera,
+    Points,
     Quaternion,
     RGBAFormat,
     SRGBColorSpace,

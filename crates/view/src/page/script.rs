@@ -1,7 +1,7 @@
 //! The page's own scripts, put together.
 
 /// Modules in an order in which each stands behind those that it imports.
-const MODULES: [&str; 16] = [
+const MODULES: [&str; 17] = [
     include_str!("../../page/decode.js"),
     include_str!("../../page/keyframes.js"),
     include_str!("../../page/voxels.js"),
@@ -10,6 +10,7 @@ const MODULES: [&str; 16] = [
     include_str!("../../page/colors.js"),
     include_str!("../../page/cubes.js"),
     include_str!("../../page/slice.js"),
+    include_str!("../../page/points.js"),
     include_str!("../../page/arrows.js"),
     include_str!("../../page/surroundings.js"),
     include_str!("../../page/controls.js"),
