@@ -34,6 +34,7 @@
 //! ```
 
 mod mesh;
+mod page;
 mod picture;
 mod recording;
 mod rows;
@@ -42,6 +43,7 @@ mod shown;
 mod testing;
 
 pub use mesh::{glb, ply_cubes, ply_points};
+pub use page::{PageKeyframe, page};
 pub use picture::{
     Across, Aim, BirdsEye, CameraView, Change, ChangeCounts, Difference, Orbit, Page, Painted,
     Strip, birds_eye, perspective, png,

@@ -14,7 +14,7 @@ pub(crate) struct ViewArgs {
     /// The labels: a folder in any dialect.
     #[arg(value_name = "DIR")]
     pub(crate) labels: PathBuf,
-    /// What is made, by its ending: .png, .mcap, .ply, .glb.
+    /// What is made, by its ending: .png, .html, .mcap, .ply, .glb.
     #[arg(long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// The dialect of the labels, where they do not tell themselves.

@@ -2,6 +2,7 @@
 
 mod cameras;
 mod mesh;
+mod page;
 mod picture_flags;
 mod pictures;
 mod recording;
@@ -16,6 +17,7 @@ use crate::shown_set::ShownSet;
 pub(crate) fn run(args: &ViewArgs, console: &Console) -> Result<Outcome, Stop> {
     let ending = args.output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let make = match ending {
+        "html" => page::make,
         "png" => pictures::make,
         "mcap" => recording::make,
         "ply" => mesh::make_ply,
@@ -35,7 +37,12 @@ pub(crate) fn run(args: &ViewArgs, console: &Console) -> Result<Outcome, Stop> {
 
 fn unknown_ending(args: &ViewArgs) -> Fault {
     let place = args.output.display().to_string();
-    Fault::new("output", place, "a file that ends in .png, .mcap, .ply or .glb", "another ending")
+    Fault::new(
+        "output",
+        place,
+        "a file that ends in .png, .html, .mcap, .ply or .glb",
+        "another ending",
+    )
 }
 
 /// Refuses flags that this kind of output has no use for.

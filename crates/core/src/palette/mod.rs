@@ -46,6 +46,12 @@ impl Palette {
         Self { classes: named.zip(colors.into_iter().flatten()).collect() }
     }
 
+    /// The same names in the colours of a set.
+    pub fn recolored(&self, set: ColorSet) -> Self {
+        let names: Vec<_> = self.classes.iter().map(|(name, _)| name).collect();
+        Self::with(&names, set)
+    }
+
     /// The colour of a class; of an id without a name, one that follows from the id.
     pub fn color(&self, id: u8) -> [u8; 3] {
         match self.classes.get(usize::from(id)) {
