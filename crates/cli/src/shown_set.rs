@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use occlabel_core::{Fault, Palette, Pose};
+use occlabel_core::{ColorSet, Fault, Palette, Pose};
 use occlabel_dialects::{KeyframeKey, LabelSet, Wanted};
 use occlabel_labels::{Manifest, PoseRecord, SceneRecord, read_evidence};
 use occlabel_view::{ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};
@@ -12,6 +12,7 @@ pub(crate) struct ShownSet {
     pub(crate) set: LabelSet,
     pub(crate) manifest: Option<Manifest>,
     folder: PathBuf,
+    colors: ColorSet,
 }
 
 impl ShownSet {
@@ -21,7 +22,13 @@ impl ShownSet {
     /// If there are no labels, or of no one dialect.
     pub(crate) fn open(folder: &Path, dialect: Option<&str>) -> Result<Self, Fault> {
         let set = LabelSet::open(folder, dialect)?;
-        Ok(Self { set, manifest: Manifest::load_tree(folder)?, folder: folder.to_owned() })
+        let manifest = Manifest::load_tree(folder)?;
+        Ok(Self { set, manifest, folder: folder.to_owned(), colors: ColorSet::Standard })
+    }
+
+    /// The same in other colours.
+    pub(crate) fn colored(self, colors: ColorSet) -> Self {
+        Self { colors, ..self }
     }
 
     /// The scenes by name.
@@ -46,7 +53,7 @@ impl ShownSet {
         Ok(ShownScene {
             name: name.to_owned(),
             frame: self.set.frame().to_owned(),
-            palette: Palette::of(&self.set.classes().names()),
+            palette: Palette::with(&self.set.classes().names(), self.colors),
             free: self.set.classes().free_index(),
             cameras: record.map_or_else(Vec::new, |record| record.cameras.clone()),
             tracks: record.map_or_else(Vec::new, tracks),

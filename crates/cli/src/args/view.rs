@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use occlabel_core::ColorSet;
 
 use super::{ConfigArgs, LogArgs};
 
@@ -25,6 +26,9 @@ pub(crate) struct ViewArgs {
     /// Only these keyframes. [default: the one in the middle where one is shown, else all]
     #[arg(long, value_delimiter = ',', value_name = "TOKEN,...")]
     pub(crate) keyframes: Vec<String>,
+    /// The colours of the classes.
+    #[arg(long, value_enum, default_value_t = ColorsArg::Standard, value_name = "SET")]
+    pub(crate) colors: ColorsArg,
     /// Which picture a .png is.
     #[arg(long, value_enum, default_value_t = PictureArg::BirdsEye)]
     pub(crate) picture: PictureArg,
@@ -33,6 +37,24 @@ pub(crate) struct ViewArgs {
     pub(crate) log: Option<LogArgs>,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
+}
+
+/// A set of colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorsArg {
+    /// Those of the datasets.
+    Standard,
+    /// Those that stay apart without the sense of red, of green or of blue.
+    ColorBlind,
+}
+
+impl From<ColorsArg> for ColorSet {
+    fn from(colors: ColorsArg) -> Self {
+        match colors {
+            ColorsArg::Standard => Self::Standard,
+            ColorsArg::ColorBlind => Self::ColorBlind,
+        }
+    }
 }
 
 /// A kind of picture.

@@ -16,6 +16,7 @@ pub(crate) fn run(args: &ViewArgs, console: &Console) -> Result<Outcome, Stop> {
         _ => return Err(Stop::usage(unknown_ending(args))),
     };
     let labels = ShownSet::open(&args.labels, args.dialect.as_deref()).map_err(Stop::usage)?;
+    let labels = labels.colored(args.colors.into());
     make(args, &labels, console)?;
     console.result(&args.output.display().to_string());
     Ok(Outcome::Complete)

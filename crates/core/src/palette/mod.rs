@@ -1,5 +1,22 @@
 //! Which colour a class has.
 
+mod color_blind;
+mod sight;
+mod standard;
+
+use color_blind::COLOR_BLIND;
+use standard::STANDARD;
+
+/// For which readers colours are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorSet {
+    /// Those that readers know: of the nuScenes occupancy benchmarks, else of Cityscapes, else ours.
+    #[default]
+    Standard,
+    /// Those that stay apart without the sense of red, of green or of blue.
+    ColorBlind,
+}
+
 /// The names and colours of classes, in id order: red, green, blue.
 #[derive(Clone, Debug)]
 pub struct Palette {
@@ -7,18 +24,22 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// The palette of a taxonomy's names in id order.
-    ///
-    /// A known name has one colour in every taxonomy: that of the nuScenes occupancy benchmarks, else
-    /// that of Cityscapes, else one of ours. The colour of any other name follows from the name,
-    /// moved on until it is unlike all others.
+    /// The standard colours of a taxonomy's names in id order.
     pub fn of(names: &[impl AsRef<str>]) -> Self {
-        let known = names.iter().map(|name| known_color(name.as_ref()));
+        Self::with(names, ColorSet::Standard)
+    }
+
+    /// The colours of a taxonomy's names in id order.
+    ///
+    /// A known name has one colour in every taxonomy. The colour of any other name follows from the
+    /// name, moved on until it is unlike all others.
+    pub fn with(names: &[impl AsRef<str>], set: ColorSet) -> Self {
+        let known = names.iter().map(|name| set.known(name.as_ref()));
         let mut colors: Vec<_> = known.collect();
         for (id, name) in names.iter().enumerate() {
             if colors[id].is_none() {
                 let taken: Vec<_> = colors.iter().flatten().copied().collect();
-                colors[id] = Some(unlike(&taken, hash(name.as_ref())));
+                colors[id] = Some(set.unlike(&taken, hash(name.as_ref())));
             }
         }
         let named = names.iter().map(|name| name.as_ref().to_owned());
@@ -42,83 +63,45 @@ impl Palette {
     }
 }
 
-/// Not the benchmarks' own: `others`, black there, on which no shade would show; and Cityscapes' greys
-/// and near-black blues.
-const KNOWN: [(&str, [u8; 3]); 49] = [
-    ("others", [172, 160, 132]),
-    ("other", [172, 172, 120]),
-    ("background", [172, 172, 120]),
-    ("general object", [172, 160, 132]),
-    ("barrier", [255, 120, 50]),
-    ("bicycle", [255, 192, 203]),
-    ("bus", [255, 255, 0]),
-    ("car", [0, 150, 245]),
-    ("vehicle", [0, 150, 245]),
-    ("large vehicle", [160, 32, 240]),
-    ("wheeled device", [255, 110, 255]),
-    ("construction vehicle", [0, 255, 255]),
-    ("motorcycle", [200, 180, 0]),
-    ("pedestrian", [255, 0, 0]),
-    ("person", [255, 0, 0]),
-    ("cyclist", [255, 100, 160]),
-    ("rider", [255, 100, 160]),
-    ("bicyclist", [255, 100, 160]),
-    ("motorcyclist", [140, 0, 70]),
-    ("traffic cone", [255, 240, 150]),
-    ("construction cone", [255, 240, 150]),
-    ("construction object", [255, 240, 150]),
-    ("trailer", [135, 60, 0]),
-    ("truck", [160, 32, 240]),
-    ("train", [0, 80, 100]),
-    ("other vehicle", [0, 80, 100]),
-    ("driveable surface", [255, 0, 255]),
-    ("road", [128, 64, 128]),
-    ("other flat", [139, 137, 137]),
-    ("other ground", [139, 137, 137]),
-    ("parking", [255, 150, 255]),
-    ("sidewalk", [75, 0, 75]),
-    ("walkable", [244, 35, 232]),
-    ("terrain", [150, 240, 80]),
-    ("manmade", [230, 230, 250]),
-    ("building", [226, 200, 168]),
-    ("wall", [102, 102, 156]),
-    ("fence", [190, 153, 153]),
-    ("pillar", [110, 190, 200]),
-    ("pole", [190, 198, 210]),
-    ("sign", [220, 220, 0]),
-    ("traffic sign", [220, 220, 0]),
-    ("traffic light", [250, 170, 30]),
-    ("vegetation", [0, 175, 0]),
-    ("tree trunk", [140, 90, 50]),
-    ("trunk", [140, 90, 50]),
-    ("sky", [70, 130, 180]),
-    ("animal", [255, 150, 130]),
-    ("debris", [120, 110, 60]),
-];
-
 /// Degrees between neighbours of a circle on which no two of many ever crowd.
 const GOLDEN_ANGLE: u32 = 137;
-/// Two colours at least so far apart in red, green and blue together are told apart.
-const UNLIKE: u32 = 60;
 
-fn known_color(name: &str) -> Option<[u8; 3]> {
-    let name = name.to_ascii_lowercase().replace(['_', '-'], " ");
-    let (_, color) = KNOWN.iter().find(|(known, _)| *known == name)?;
-    Some(*color)
-}
+impl ColorSet {
+    fn known(self, name: &str) -> Option<[u8; 3]> {
+        let name = name.to_ascii_lowercase().replace(['_', '-'], " ");
+        let table: &[(&str, [u8; 3])] = match self {
+            Self::Standard => &STANDARD,
+            Self::ColorBlind => &COLOR_BLIND,
+        };
+        let (_, color) = table.iter().find(|(known, _)| *known == name)?;
+        Some(*color)
+    }
 
-/// The first colour on the way around the circle that is unlike all taken ones, or else the one that
-/// is least like any.
-fn unlike(taken: &[[u8; 3]], start: u32) -> [u8; 3] {
-    let nearest = |color: &[u8; 3]| taken.iter().map(|other| apart(*color, *other)).min();
-    let way = || (0..72).map(|turn| hue(start % 360 + turn * GOLDEN_ANGLE, turn / 24));
-    let clear = way().find(|color| nearest(color).is_none_or(|d| d >= UNLIKE));
-    let farthest = || way().max_by_key(nearest);
-    clear.or_else(farthest).expect("a way of 72 colours")
-}
+    /// How far two colours are from each other.
+    fn apart(self, a: [u8; 3], b: [u8; 3]) -> u32 {
+        match self {
+            Self::Standard => (0..3).map(|i| u32::from(a[i].abs_diff(b[i]))).sum(),
+            Self::ColorBlind => sight::apart(a, b),
+        }
+    }
 
-fn apart(a: [u8; 3], b: [u8; 3]) -> u32 {
-    (0..3).map(|i| u32::from(a[i].abs_diff(b[i]))).sum()
+    /// From which distance two colours are unlike.
+    fn enough(self) -> u32 {
+        match self {
+            Self::Standard => 60,
+            Self::ColorBlind => 75,
+        }
+    }
+
+    /// The first colour on the way around the circle that is unlike all taken ones, or else the one
+    /// that is least like any.
+    fn unlike(self, taken: &[[u8; 3]], start: u32) -> [u8; 3] {
+        let nearest = |color: &[u8; 3]| taken.iter().map(|other| self.apart(*color, *other)).min();
+        let way = || (0..72).map(|turn| hue(start % 360 + turn * GOLDEN_ANGLE, turn / 24));
+        let clear = way().find(|color| nearest(color).is_none_or(|d| d >= self.enough()));
+        let farthest = || way().max_by_key(nearest);
+        clear.or_else(farthest).expect("a way of 72 colours")
+    }
 }
 
 /// A colour by its angle in degrees, in one of three strengths.
@@ -164,7 +147,8 @@ mod tests {
         for a in 0..20 {
             assert_eq!(one.color(a), two.color(a));
             for b in 0..a {
-                assert!(apart(one.color(a), one.color(b)) >= UNLIKE, "{a} and {b}");
+                let d = ColorSet::Standard.apart(one.color(a), one.color(b));
+                assert!(d >= ColorSet::Standard.enough(), "{a} and {b}");
                 pairs += 1;
             }
         }
@@ -179,16 +163,32 @@ mod tests {
 
     #[test]
     fn the_classes_of_a_shipped_taxonomy_are_told_apart() {
-        for (name, classes) in shipped() {
-            let palette = Palette::of(&classes);
-            for a in 0..classes.len() {
-                for b in 0..a {
-                    let d = apart(palette.color(a as u8), palette.color(b as u8));
-                    assert!(d >= 55, "{name}: {} and {} differ by {d}", classes[a], classes[b]);
+        for (set, enough) in [(ColorSet::Standard, 55), (ColorSet::ColorBlind, 75)] {
+            for (name, classes) in shipped() {
+                let palette = Palette::with(&classes, set);
+                for (a, b) in pairs(classes.len()) {
+                    let d = set.apart(palette.color(a as u8), palette.color(b as u8));
+                    assert!(d >= enough, "{name}: {} and {} differ by {d}", classes[a], classes[b]);
                 }
-                assert!(known_color(&classes[a]).is_some(), "{name}: {}", classes[a]);
+                let known = |class: &String| set.known(class).is_some();
+                assert!(classes.iter().all(known), "{name}");
             }
         }
+    }
+
+    /// The standard colours cannot do it, or there would be no need for the others.
+    #[test]
+    fn some_standard_colors_are_one_to_the_color_blind() {
+        let nearest = |(_, classes): (String, Vec<String>)| {
+            let palette = Palette::of(&classes);
+            let d = |(a, b)| sight::apart(palette.color(a as u8), palette.color(b as u8));
+            pairs(classes.len()).map(d).min().unwrap()
+        };
+        assert!(shipped().into_iter().map(nearest).min().unwrap() < 10);
+    }
+
+    fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
+        (0..n).flat_map(|a| (0..a).map(move |b| (a, b)))
     }
 
     fn shipped() -> Vec<(String, Vec<String>)> {
