@@ -32,8 +32,14 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod base64;
 mod picture;
+mod report;
 mod shown;
 
-pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
+pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png, thumbnail};
+pub use report::{
+    KeyframeAt, QualityTable, Remark, Run, RunClass, RunKeyframe, RunScene, Thumbnail, VoxelTotals,
+    report_page,
+};
 pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

@@ -7,6 +7,7 @@ mod evaluate;
 mod label;
 mod log;
 mod quality;
+mod report;
 mod simulate;
 mod view;
 
@@ -21,6 +22,7 @@ pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use quality::QualityArgs;
+pub(crate) use report::ReportArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
 pub(crate) use view::{PictureArg, ViewArgs};
 
@@ -71,6 +73,8 @@ pub(crate) enum Command {
     Describe(DescribeArgs),
     /// Show labels: as a picture, for Foxglove and Rerun, as a mesh, or as a page.
     View(Box<ViewArgs>),
+    /// Show a whole run on one page, what strays from the rest first.
+    Report(ReportArgs),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.

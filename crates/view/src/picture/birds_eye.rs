@@ -86,7 +86,7 @@ fn map_size(labels: &Painted, map_px: u32) -> (u32, u32) {
 }
 
 /// The colour of a column, beside that from where the light comes.
-fn color(labels: &Painted, column: Column, ahead_left: Column, nz: usize) -> Rgb<u8> {
+pub(super) fn color(labels: &Painted, column: Column, ahead_left: Column, nz: usize) -> Rgb<u8> {
     match column {
         Column::Unobserved => UNOBSERVED,
         Column::Free { hidden: false } => FREE,

@@ -14,9 +14,11 @@ mod painted;
 mod perspective;
 mod png;
 mod shade;
+mod thumbnail;
 
 pub use birds_eye::{BirdsEye, birds_eye};
 pub use orbit::Orbit;
 pub use painted::Painted;
 pub use perspective::perspective;
 pub use png::png;
+pub use thumbnail::thumbnail;
