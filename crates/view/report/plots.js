@@ -27,7 +27,7 @@
         indexAxis: "y",
         plugins: { tooltip: { callbacks: { label: (item) => options.told(item.raw) } } },
         scales: {
-          x: { type: options.scale, min: options.min, title: { display: true, text: options.unit }, ticks: options.ticks },
+          x: { type: options.scale, min: options.min, title: { display: true, text: options.unit }, ticks: options.ticks, grid: options.grid },
           y: { grid: { display: false }, ticks: { autoSkip: false } },
         },
       },
@@ -41,7 +41,8 @@
       min: 1,
       unit: "voxels, logarithmic",
       told: (value) => `${grouped(value)} voxels`,
-      ticks: { callback: (value) => (isTen(value) ? grouped(value) : "") },
+      grid: { color: (line) => (isTen(line.tick.value) ? FAINT : "transparent") },
+      ticks: { callback: (value) => (isTen(value) ? grouped(value) : ""), autoSkip: false, maxRotation: 0 },
     });
   }
 
@@ -83,7 +84,7 @@
         interaction: { mode: "index", intersect: false },
         plugins: { tooltip: { callbacks: { title: (items) => `keyframe ${items[0].label}`, label: (item) => `${item.raw} %` } } },
         scales: {
-          x: { title: { display: true, text: "keyframe" }, grid: { display: false }, ticks: { maxRotation: 0 } },
+          x: { title: { display: true, text: "keyframe" }, grid: { display: false }, ticks: { maxRotation: 0, maxTicksLimit: 11 } },
           y: { beginAtZero: true, grace: "5%", ticks: { callback: (value) => `${Number(value.toPrecision(4))} %`, maxTicksLimit: 6 } },
         },
       },

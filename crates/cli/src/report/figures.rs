@@ -1,5 +1,6 @@
 //! What `quality --json` printed, as tables.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use occlabel_core::Fault;
@@ -40,22 +41,32 @@ fn world_truth(tree: &Value) -> Option<QualityTable> {
     })
 }
 
-/// Figures by sweeps that were held out: of all, and of what they met.
+/// Figures by sweeps that were held out: of all they met, and of each kind of it, a column each.
 fn held_out(json: &Value) -> Option<QualityTable> {
     let every = json["held_out"].as_u64()?;
     let labels = json["total"]["labels"].as_object()?;
-    let plain = |(name, value): (&String, &Value)| Some(vec![words(name), number(value)?]);
-    let of_kind = |(kind, figures): (&String, &Map<String, Value>)| -> Vec<Vec<String>> {
-        let row = |(name, value): (&String, &Value)| {
-            Some(vec![format!("{}: {}", words(kind), words(name)), number(value)?])
-        };
-        figures.iter().filter_map(row).collect()
+    let is_kind = |(_, value): &(&String, &Value)| value.is_object();
+    let (kinds, plain): (Vec<_>, Vec<_>) = labels.iter().partition(is_kind);
+    let all: Map<String, Value> =
+        plain.into_iter().map(|(name, value)| (name.clone(), value.clone())).collect();
+    let kinds =
+        kinds.into_iter().filter_map(|(name, value)| Some((words(name), value.as_object()?)));
+    let columns: Vec<_> = std::iter::once(("all".to_owned(), &all)).chain(kinds).collect();
+    let names: BTreeSet<&String> = columns.iter().flat_map(|(_, figures)| figures.keys()).collect();
+    let cell = |figures: &Map<String, Value>, name: &String| {
+        figures.get(name).and_then(number).unwrap_or_else(|| "–".to_owned())
     };
-    let kinds = labels.iter().filter_map(|(kind, value)| Some((kind, value.as_object()?)));
+    let row = |name: &String| -> Vec<String> {
+        let cells = columns.iter().map(|(_, figures)| cell(figures, name));
+        std::iter::once(words(name)).chain(cells).collect()
+    };
     Some(QualityTable {
         title: format!("Asked by sweeps that took no part: every {every}th of each lidar"),
-        columns: ["Figure", "Value"].map(str::to_owned).to_vec(),
-        rows: labels.iter().filter_map(plain).chain(kinds.flat_map(of_kind)).collect(),
+        rows: names.into_iter().map(row).collect(),
+        columns: ["Figure".to_owned()]
+            .into_iter()
+            .chain(columns.iter().map(|(kind, _)| kind.clone()))
+            .collect(),
     })
 }
 
@@ -99,11 +110,9 @@ mod tests {
         let held_out = r#"{"held_out": 5, "total": {"labels": {"returns": 7,
             "ground": {"depth_mean_m": 0.5, "hit_recall": null}}}}"#;
         let rows = read(held_out).unwrap().remove(0).rows;
-        assert_eq!(
-            rows,
-            [["returns", "7"], ["ground: depth mean, m", "0.5000"]]
-                .map(|row| row.map(str::to_owned))
-        );
+        let expected =
+            [["depth mean, m", "–", "0.5000"], ["hit recall", "–", "–"], ["returns", "7", "–"]];
+        assert_eq!(rows, expected.map(|row| row.map(str::to_owned)));
     }
 
     #[test]

@@ -14,7 +14,7 @@ const CHART: &str = include_str!("../../report/vendor/chart.umd.min.js");
 const CHART_LICENSE: &str = include_str!("../../report/vendor/chart.LICENSE.md");
 
 /// Nothing is fetched, nothing is sent.
-const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
+const POLICY: &str = "default-src 'none'; script-src 'nonce-occlabel'; style-src 'unsafe-inline'; \
     img-src data:; base-uri 'none'; form-action 'none'";
 
 /// One file that shows a run: no server, no network. What strays comes first; every number of a plot
@@ -59,6 +59,9 @@ fn foot(page: &mut Html, run: &Run, order: &Attention) {
     page.markup("<footer><p>Made by occlabel. Plots by Chart.js.</p>\n<details><summary>");
     page.markup("Licence of Chart.js</summary>").preformatted(CHART_LICENSE);
     page.markup("</details></footer></main>\n<script type=\"application/json\" id=\"data\">");
-    page.markup(&data).markup("</script>\n<script>").markup(chart).markup("</script>\n<script>\n");
+    page.markup(&data)
+        .markup("</script>\n<script nonce=\"occlabel\">")
+        .markup(chart)
+        .markup("</script>\n<script nonce=\"occlabel\">\n");
     page.markup(PLOTS).markup("</script></body></html>\n");
 }

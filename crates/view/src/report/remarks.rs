@@ -55,7 +55,7 @@ pub(crate) fn drops(page: &mut Html, run: &Run) {
     };
     page.markup("<section id=\"drops\"><h2>Points that took no part</h2>\n");
     page.table(
-        "numbers",
+        "numbers narrow",
         &["Reason", "Points", "Share of these"],
         &some.map(row).collect::<Vec<_>>(),
     );

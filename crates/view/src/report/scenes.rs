@@ -64,9 +64,9 @@ fn card(page: &mut Html, run: &Run, item: &Item, thumbnails: &[Thumbnail]) {
         }
     }
     let rest = match (item.keyframe, item.in_scene) {
-        (None, _) => "in most scenes",
-        (_, true) => "in most of its scene",
-        (_, false) => "in most keyframes",
+        (None, _) => "in the run",
+        (_, true) => "in its scene",
+        (_, false) => "in the run",
     };
     for one in item.strays.iter().take(MOST_STRAYS) {
         page.element("p", &stray(one, rest, run));

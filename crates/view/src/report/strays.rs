@@ -131,7 +131,8 @@ mod tests {
             [Share::Free],
             "unobserved is 97 % instead of 88 %: not 3.5 times 5 %"
         );
-        assert_eq!(shares(10), [Share::Class(0), Share::Class(1)]);
+        assert!(shares(10).contains(&Share::Class(0)) && shares(10).contains(&Share::Class(1)));
+        assert_eq!(shares(10).len(), 2);
         assert!((found[9][0].times - 0.07 / 0.005).abs() < 0.1, "{:?}", found[9]);
     }
 

@@ -38,7 +38,7 @@ pub(crate) fn quality(page: &mut Html, run: &Run) {
     for table in &run.quality {
         page.element("h3", &table.title).line();
         let columns: Vec<&str> = table.columns.iter().map(String::as_str).collect();
-        page.table("numbers", &columns, &table.rows);
+        page.table("numbers narrow", &columns, &table.rows);
     }
     page.markup("</section>\n");
 }

@@ -53,7 +53,7 @@ pub(crate) fn stray(stray: &Stray, rest: &str, run: &Run) -> String {
     };
     let far = if times < 100.0 { format!("{times:.0}") } else { "over 100".to_owned() };
     let (value, usual) = (percent(value), percent(usual));
-    format!("{what}: {value} {of}; {rest}, {usual}. {far} times the usual spread.")
+    format!("{what}: {value} {of}; usual {rest}: {usual} ({far} times the usual spread away).")
 }
 
 /// A class by its index.
