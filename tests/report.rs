@@ -139,7 +139,7 @@ fn what_strays_is_first_and_what_cannot_be_read_is_told() {
     let page = fs::read_to_string(reported.page(&[])).expect("a page");
     let (_, first) = page.split_once("class=\"cards\"").expect("cards");
     let (first, _) = first.split_once("</li>").expect("a card");
-    assert!(first.contains(&tokens[4]) && first.contains("Occupied: 0 %"), "{first}");
+    assert!(first.contains(&tokens[4]) && first.contains("Occupied: 0\u{a0}%"), "{first}");
     assert!(first.contains("data:image/png;base64,"));
     let unread = table(&page, "first");
     assert_eq!((unread.len(), unread[0][1].as_str()), (1, tokens[7].as_str()));

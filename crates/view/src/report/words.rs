@@ -6,10 +6,10 @@ use super::strays::{Share, Stray};
 /// 0 to 1 as per cent, with as many digits as tell small shares apart.
 pub(crate) fn percent(share: f64) -> String {
     match share * 100.0 {
-        0.0 => "0 %".to_owned(),
-        p if p < 0.01 => "< 0.01 %".to_owned(),
-        p if p < 10.0 => format!("{p:.2} %"),
-        p => format!("{p:.1} %"),
+        0.0 => "0\u{a0}%".to_owned(),
+        p if p < 0.01 => "<\u{a0}0.01\u{a0}%".to_owned(),
+        p if p < 10.0 => format!("{p:.2}\u{a0}%"),
+        p => format!("{p:.1}\u{a0}%"),
     }
 }
 
@@ -67,7 +67,8 @@ mod tests {
 
     #[test]
     fn numbers_read_well() {
-        assert_eq!([0.0, 1e-6, 0.0123, 0.5].map(percent), ["0 %", "< 0.01 %", "1.23 %", "50.0 %"]);
+        let told = [0.0, 1e-6, 0.0123, 0.5].map(|share| percent(share).replace('\u{a0}', " "));
+        assert_eq!(told, ["0 %", "< 0.01 %", "1.23 %", "50.0 %"]);
         assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
         assert_eq!((count(0), count(999)), ("0".into(), "999".into()));
         let told = [0.25, 75.0, 600.0, 36_000.0].map(seconds);
