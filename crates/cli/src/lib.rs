@@ -34,6 +34,7 @@ mod presets;
 mod progress;
 mod quality;
 mod ray_origins;
+mod report;
 mod shown_set;
 mod simulate;
 mod threads;
@@ -107,6 +108,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
         Command::View(args) => view::run(args, console),
+        Command::Report(args) => report::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Presets { name } => presets::run(name.as_deref(), console),

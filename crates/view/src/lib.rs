@@ -33,10 +33,12 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod base64;
 mod mesh;
 mod page;
 mod picture;
 mod recording;
+mod report;
 mod rows;
 mod shown;
 #[cfg(test)]
@@ -46,7 +48,11 @@ pub use mesh::{glb, ply_cubes, ply_points};
 pub use page::{PageKeyframe, page};
 pub use picture::{
     Across, Aim, BirdsEye, CameraView, Change, ChangeCounts, Difference, Orbit, Page, Painted,
-    Strip, birds_eye, perspective, png,
+    Strip, birds_eye, perspective, png, thumbnail,
 };
 pub use recording::{EGO, GRID, Recording, ShownBox, WORLD};
+pub use report::{
+    KeyframeAt, QualityTable, Remark, Run, RunClass, RunKeyframe, RunScene, Thumbnail, VoxelTotals,
+    report_page,
+};
 pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

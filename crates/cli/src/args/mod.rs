@@ -8,6 +8,7 @@ mod label;
 mod log;
 mod picture;
 mod quality;
+mod report;
 mod simulate;
 mod view;
 
@@ -23,6 +24,7 @@ pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use picture::{AcrossArg, PictureArg, PictureArgs};
 pub(crate) use quality::QualityArgs;
+pub(crate) use report::ReportArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
 pub(crate) use view::{MeshArg, ViewArgs};
 
@@ -73,6 +75,8 @@ pub(crate) enum Command {
     Describe(DescribeArgs),
     /// Show labels: as a picture, for Foxglove and Rerun, as a mesh, or as a page.
     View(Box<ViewArgs>),
+    /// Show a whole run on one page, what strays from the rest first.
+    Report(ReportArgs),
     /// Show what a log holds.
     Inspect(InspectArgs),
     /// Drive through an exactly known world: a log with its truth.

@@ -158,7 +158,7 @@ pub(crate) fn map_size(spec: &GridSpec, (width, height): (u32, u32)) -> (u32, u3
 }
 
 /// The colour of a column, beside that from where the light comes.
-fn color(labels: &Painted, column: Column, ahead_left: Column, nz: usize) -> Rgb<u8> {
+pub(super) fn color(labels: &Painted, column: Column, ahead_left: Column, nz: usize) -> Rgb<u8> {
     match column {
         Column::Unobserved => UNOBSERVED,
         Column::Unlabelled => UNLABELLED,

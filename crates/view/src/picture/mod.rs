@@ -22,6 +22,7 @@ mod shade;
 mod sheet;
 mod slices;
 mod strip;
+mod thumbnail;
 mod tiles;
 
 pub use birds_eye::{BirdsEye, birds_eye};
@@ -34,3 +35,4 @@ pub use perspective::perspective;
 pub use png::png;
 pub use slices::Across;
 pub use strip::Strip;
+pub use thumbnail::thumbnail;
