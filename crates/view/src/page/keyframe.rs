@@ -2,10 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
 use occlabel_core::VoxelGrid;
 use serde::Serialize;
 
-use super::base64::base64;
 use super::{counts, flow, planes};
 use crate::{NO_LABEL, ShownEvidence, ShownKeyframe};
 
@@ -56,7 +57,7 @@ impl PageKeyframe {
 
     /// An array as text, by its name.
     pub(crate) fn texts(&self) -> impl Iterator<Item = (&'static str, String)> {
-        self.arrays.iter().map(|array| (array.name, base64(&array.bytes)))
+        self.arrays.iter().map(|array| (array.name, BASE64.encode(&array.bytes)))
     }
 }
 

@@ -4,7 +4,6 @@
 //! from a log (names of scenes, classes, tracks) is data, never markup: it stands in JSON without a `<`,
 //! and the scripts write it as text only.
 
-mod base64;
 mod bits;
 mod counts;
 mod deflate;

@@ -4,7 +4,8 @@ use super::attention::{Attention, Item, KeyframeAt, MOST_ITEMS};
 use super::html::{Html, escaped};
 use super::run::{Run, RunScene, Thumbnail};
 use super::words::{count, part, seconds, stray};
-use crate::base64::base64;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
 
 /// So many ways in which one thing strays are told, at most.
 const MOST_STRAYS: usize = 3;
@@ -78,7 +79,7 @@ fn picture(page: &mut Html, run: &Run, at: KeyframeAt, thumbnails: &[Thumbnail])
     let Some(found) = thumbnails.iter().find(|thumbnail| thumbnail.at == at) else { return };
     let scene = &run.scenes[at.scene];
     let named = escaped(&format!("{}, {}", scene.name, scene.keyframes[at.keyframe].token));
-    let data = base64(&found.png);
+    let data = BASE64.encode(&found.png);
     page.markup(&format!(
         "<img src=\"data:image/png;base64,{data}\" alt=\"{named}, from above\" title=\"{named}\">"
     ));
