@@ -13,8 +13,8 @@ const BLOCK_M = 3;
 export class Arrows extends THREE.Group {
     constructor() {
         super();
-        const shaft = new THREE.CylinderGeometry(0.09, 0.09, 1, 8).translate(0, 0.5, 0);
-        const head = new THREE.ConeGeometry(0.34, 0.9, 12).translate(0, -0.45, 0);
+        const shaft = new THREE.CylinderGeometry(0.055, 0.055, 1, 8).translate(0, 0.5, 0);
+        const head = new THREE.ConeGeometry(0.24, 0.9, 12).translate(0, -0.45, 0);
         this.parts = [shaft, head];
     }
 
