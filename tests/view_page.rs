@@ -22,8 +22,18 @@ fn the_page_shows_what_the_arrays_say() {
     let (page, expected) = (folder.path().join("labels.html"), folder.path().join("expected.json"));
     occlabel(&["view", text(&labels), "--output", text(&page)]).exits(0);
     fs::write(&expected, expected_of(&labels, &manifest).to_string()).expect("written");
-    let Some(measured) = in_browser(&page, &expected) else { return };
+    let Some(measured) = in_browser("page.mjs", &[&page, &expected]) else { return };
     println!("{measured}");
+}
+
+#[test]
+fn the_page_offers_only_what_the_labels_hold() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let labels = labelled_drive(folder.path(), WORLD, ["nuscenes"; 2], "occ3d-nuscenes");
+    let (bare, page) = (folder.path().join("bare"), folder.path().join("bare.html"));
+    occlabel(&["convert", text(&labels), "--to", "surroundocc", "--output", text(&bare)]);
+    occlabel(&["view", text(&bare), "--output", text(&page)]).exits(0);
+    in_browser("bare_page.mjs", &[&page]);
 }
 
 #[test]
@@ -95,7 +105,7 @@ fn keyframe(labels: &Path, scene: &str, token: &str) -> Value {
 }
 
 /// Runs the browser; `None`, with a printed reason, if it is not installed.
-fn in_browser(page: &Path, expected: &Path) -> Option<String> {
+fn in_browser(script: &str, files: &[&Path]) -> Option<String> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/outside");
     let needed = [folder.join("node_modules/playwright-core"), "/usr/bin/chromium".into()];
     if let Some(absent) = needed.iter().find(|path| !path.exists()) {
@@ -104,7 +114,7 @@ fn in_browser(page: &Path, expected: &Path) -> Option<String> {
         println!("skipped: {} is not there; tests/outside/install brings it", absent.display());
         return None;
     }
-    let output = Command::new("node").arg(folder.join("page.mjs")).args([page, expected]).output();
+    let output = Command::new("node").arg(folder.join(script)).args(files).output();
     let output = output.expect("node starts");
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");

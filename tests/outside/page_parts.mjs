@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 
-import { DIRECTIONS, facesBefore, facesOf } from "../../crates/view/page/faces.js";
+import { DIRECTIONS, facesBefore, facesOf, keepNearest } from "../../crates/view/page/faces.js";
 import { Keyframes } from "../../crates/view/page/keyframes.js";
 import { firstOnRay } from "../../crates/view/page/pick.js";
 
@@ -62,7 +62,18 @@ export function checkFaces({ shape, free, keyframes }) {
         faces += wanted.length;
     });
     assert.ok(faces > 1000);
-    return { faces };
+    return { faces, kept: checkNearest(shown, shape, faces) };
+}
+
+/** As many of the nearest voxels are kept as faces are allowed. */
+function checkNearest(shown, shape, faces) {
+    const centre = [Math.floor(shape[0] / 2), Math.floor(shape[1] / 2)];
+    assert.equal(keepNearest(shown.slice(), shape, centre, faces), null);
+    const kept = shown.slice();
+    const reach = keepNearest(kept, shape, centre, faces / 2);
+    const ring = (flat) => Math.max(...[0, 1].map((axis) => Math.abs(voxelAt(shape, flat)[axis] - centre[axis])));
+    kept.forEach((isKept, flat) => assert.equal(isKept === 1, shown[flat] === 1 && ring(flat) <= reach));
+    return kept.reduce((sum, isKept) => sum + isKept, 0);
 }
 
 /** Rays find the voxel whose box they enter first of all. */

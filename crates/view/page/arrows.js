@@ -13,14 +13,15 @@ const BLOCK_M = 3;
 export class Arrows extends THREE.Group {
     constructor() {
         super();
-        const shaft = new THREE.CylinderGeometry(0.09, 0.09, 1, 8).translate(0, 0.5, 0);
-        const head = new THREE.ConeGeometry(0.34, 0.9, 12).translate(0, -0.45, 0);
+        const shaft = new THREE.CylinderGeometry(0.055, 0.055, 1, 8).translate(0, 0.5, 0);
+        const head = new THREE.ConeGeometry(0.24, 0.9, 12).translate(0, -0.45, 0);
         this.parts = [shaft, head];
     }
 
-    show(keyframe) {
+    /** Arrows of the voxels that are shown. */
+    show(keyframe, shown) {
         this.clear();
-        const arrows = keyframe.flow ? arrowsOf(keyframe) : [];
+        const arrows = keyframe.flow ? arrowsOf(keyframe, shown) : [];
         if (arrows.length === 0) return;
         const material = new THREE.MeshBasicMaterial({ color: COLOR });
         const [shafts, heads] = this.parts.map((part) => new THREE.InstancedMesh(part, material, arrows.length));
@@ -40,11 +41,11 @@ const UP = new THREE.Vector3(0, 1, 0);
 const ONE = new THREE.Vector3(1, 1, 1);
 
 /** Mean place, on top, and mean flow of the voxels of each track that move. */
-export function arrowsOf(keyframe) {
+function arrowsOf(keyframe, shown) {
     const groups = new Map();
     keyframe.flow.flats.forEach((flat, at) => {
         const flow = keyframe.flow.axes.map((axis) => axis[at]);
-        if (!(Math.hypot(...flow) >= SLOWEST_MPS)) return;
+        if (!shown[flat] || !(Math.hypot(...flow) >= SLOWEST_MPS)) return;
         const centre = centreOf(keyframe, voxelAt(keyframe.shape, flat));
         const key = keyframe.instances?.[flat] || centre.map((c) => Math.floor(c / BLOCK_M)).join();
         const group = groups.get(key) ?? { count: 0, sum: [0, 0, 0, 0, 0], top: -Infinity };

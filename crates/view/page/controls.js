@@ -91,8 +91,8 @@ export function presetsOf({ min_m, size_m, shape }) {
         corner: [[x - 0.95 * long, y - 0.72 * wide, ground + 0.8 * reach], centre],
         top: [[x - 0.001, y, ground + 1.5 * reach], centre],
         behind: [[x - 0.8 * long, y, ground + 0.36 * reach], [x + 0.05 * long, y, ground]],
-        left: [[x, y + 1.25 * wide, ground + 0.45 * reach], centre],
-        right: [[x, y - 1.25 * wide, ground + 0.45 * reach], centre],
+        left: [[x, y + 1.1 * wide, ground + 0.4 * reach], centre],
+        right: [[x, y - 1.1 * wide, ground + 0.4 * reach], centre],
         front: [[x + 1.2 * long, y, ground + 0.45 * reach], centre],
         ego: [[-9, 0, 5.5], [12, 0, 0]],
     };

@@ -40,7 +40,10 @@ export function numbersOf(planes, shape) {
         for (let flat = slab; flat < plane.length; flat++) plane[flat] ^= plane[flat - slab];
     }
     if (planes.length === 1) return planes[0];
-    return Uint16Array.from(planes[0], (low, flat) => low | (planes[1][flat] << 8));
+    const [low, high] = planes;
+    const numbers = new Uint16Array(low.length);
+    for (let flat = 0; flat < numbers.length; flat++) numbers[flat] = low[flat] | (high[flat] << 8);
+    return numbers;
 }
 
 /** A grid of counts. `expected(flat)` says where counts are likely. */

@@ -20,7 +20,26 @@ export function facesOf(shown, shape) {
     return faces;
 }
 
-/** Layers count from the side that faces of the direction look away from... to where they look. */
+/**
+ * Takes away the shown voxels that are farthest from `centre` (x, y), so that at most `most` faces are left:
+ * gives how many voxels away the farthest may be that stay, or null if all may.
+ */
+export function keepNearest(shown, shape, centre, most) {
+    const strides = [shape[1] * shape[2], shape[2], 1];
+    const ring = (flat) => {
+        const [x, y] = [Math.floor(flat / strides[0]), Math.floor(flat / strides[1]) % shape[1]];
+        return Math.max(Math.abs(x - centre[0]), Math.abs(y - centre[1]));
+    };
+    const faces = new Uint32Array(shape[0] + shape[1] + Math.abs(centre[0]) + Math.abs(centre[1]) + 1);
+    eachFace(shown, shape, strides, (direction, layer, flat) => faces[ring(flat)]++);
+    let [reach, sum] = [0, 0];
+    while (reach < faces.length && sum + faces[reach] <= most) sum += faces[reach++];
+    if (reach === faces.length) return null;
+    shown.forEach((isShown, flat) => isShown && ring(flat) >= reach && (shown[flat] = 0));
+    return Math.max(reach - 1, 0);
+}
+
+/** Layers are counted in the order in which an eye that comes from behind the faces passes them. */
 function eachFace(shown, shape, strides, each) {
     const voxel = [0, 0, 0];
     for (let flat = 0; flat < shown.length; flat++) {

@@ -29,7 +29,7 @@ const GREY = [120, 128, 140];
 function stateOf(keyframe, flat) {
     if (keyframe.semantics[flat] === NO_LABEL) return "no label";
     if (keyframe.isOccupied(flat)) return keyframe.isObserved(flat) ? "occupied" : "occupied, not observed";
-    return keyframe.isObserved(flat) ? "free" : "unobserved";
+    return keyframe.isObserved(flat) ? keyframe.emptyName() : "unobserved";
 }
 
 function place(keyframe, flat) {

@@ -93,6 +93,11 @@ class Keyframe {
         return this.semantics[flat] !== NO_LABEL && (!this.mask_lidar || this.mask_lidar[flat] !== 0);
     }
 
+    /** What a voxel is where nothing stands and nobody says that it was not observed. */
+    emptyName() {
+        return this.has("mask_lidar") ? "free" : "free or unobserved";
+    }
+
     /** Whether cameras are known, and none sees the voxel. */
     isHidden(flat) {
         return this.hasCameras() && this.mask_camera[flat] === 0;

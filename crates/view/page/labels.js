@@ -38,6 +38,7 @@ function wordsOf(grid) {
     ];
     for (const axis of [0, 1]) {
         for (let metres = Math.ceil(low[axis] / WORD_STEP_M) * WORD_STEP_M; metres <= high[axis]; metres += WORD_STEP_M) {
+            if (axis === 1 && metres - low[1] < 5) continue;
             const at = axis === 0 ? [metres, low[1] - 1.5, low[2]] : [low[0] - 1.5, metres, low[2]];
             words.push({ text: `${metres} m`, at });
         }

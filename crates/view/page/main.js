@@ -4,23 +4,25 @@ import { Arrows } from "./arrows.js";
 import { cubeColor, freeColor, PAPER, sliceColor, unobservedColor, waysToColor } from "./colors.js";
 import { Controls, presetsOf } from "./controls.js";
 import { Cubes } from "./cubes.js";
+import { keepNearest } from "./faces.js";
 import { factsOf } from "./facts.js";
 import { hashOf, viewOf } from "./hash.js";
 import { Keyframes } from "./keyframes.js";
+import { press } from "./keys.js";
 import { Labels } from "./labels.js";
 import { Panel } from "./panel.js";
 import { firstOnRay } from "./pick.js";
+import { play } from "./play.js";
 import { VoxelPoints } from "./points.js";
 import { Slice } from "./slice.js";
-import { Surroundings } from "./surroundings.js";
+import { frameOfPick, Surroundings } from "./surroundings.js";
 import { centreOf, shownVoxels, tally, voxelAt } from "./voxels.js";
 
-const PRESET_KEYS = ["Digit1", "Digit2", "Digit3", "Digit4", "Digit5", "Digit6", "Digit7"];
 /** A click is a press that moved by fewer pixels. */
 const CLICK_PX = 5;
 const FOV_DEG = 40;
-/** Where the labels do not tell the time: keyframes a second when played. */
-const PLAYED_HZ = 2;
+/** Faces beyond these are left out, those farthest from the ego first. */
+const MOST_FACES = 2e6;
 
 class Viewer {
     constructor(scene, textOf) {
@@ -57,7 +59,7 @@ class Viewer {
 
     listen() {
         addEventListener("resize", () => this.resize());
-        addEventListener("keydown", (event) => this.key(event));
+        addEventListener("keydown", (event) => press(this, event));
         addEventListener("keyup", (event) => this.controls.key(event, false));
         addEventListener("blur", () => this.controls.release());
         addEventListener("hashchange", () => location.hash !== this.written && this.start());
@@ -68,28 +70,6 @@ class Viewer {
     release({ offsetX, offsetY, button }) {
         const [x, y] = this.pressed ?? [NaN, NaN];
         if (button === 0 && Math.hypot(offsetX - x, offsetY - y) < CLICK_PX) this.pickAt(offsetX, offsetY);
-    }
-
-    key(event) {
-        const { code, target } = event;
-        if (event.ctrlKey || event.metaKey || event.altKey || /SELECT|SUMMARY/.test(target.tagName)) return;
-        const presets = Object.keys(presetsOf(this.keyframe ?? this.scene.keyframes[0]));
-        const isSlice = target.id === "slice-at";
-        const does = {
-            ArrowLeft: () => this.step(-1),
-            ArrowRight: () => this.step(1),
-            Home: () => this.step(-Infinity),
-            End: () => this.step(Infinity),
-            Space: () => this.play(!this.isPlaying),
-            KeyR: () => this.lookFrom("corner"),
-            Escape: () => this.pick(null),
-        };
-        PRESET_KEYS.forEach((key, at) => (does[key] = () => this.lookFrom(presets[at])));
-        const isButton = code === "Space" && /BUTTON|INPUT/.test(target.tagName);
-        if (code in does && !isSlice && !isButton) does[code]();
-        else if (!this.controls.key(event, true)) return;
-        event.preventDefault();
-        this.wake();
     }
 
     /** Changes what is shown. */
@@ -150,26 +130,33 @@ class Viewer {
         if (this.keyframe !== keyframe) this.counts = tally(keyframe);
         this.keyframe = keyframe;
         this.shown = shownVoxels(keyframe, this.view);
+        const reach = this.keepNearest(keyframe);
         this.cubes.show(keyframe, this.shown, cubeColor(keyframe, this.view, way));
         this.slice.show(keyframe, this.view.slice, sliceColor(keyframe, way));
-        this.showPoints(keyframe, way);
-        this.arrows.show(keyframe);
+        this.panel.leftOut([reach, this.showPoints(keyframe, way)].join(" ").trim());
+        this.arrows.show(keyframe, this.shown);
         this.arrows.visible = this.view.flow;
         this.surroundings.show(keyframe);
         this.surroundings.visible = this.view.lines;
     }
 
+    /** Leaves out what is too much to be drawn; says what. */
+    keepNearest({ shape, min_m, size_m }) {
+        const ego = [0, 1].map((axis) => Math.floor(-min_m[axis] / size_m[axis]));
+        const reach = keepNearest(this.shown, shape, ego, MOST_FACES);
+        return reach === null ? "" : `Cubes farther than ${(reach * size_m[0]).toFixed(1)} m ahead, behind or aside are left out.`;
+    }
+
     showPoints(keyframe, way) {
         const { slice, free, unobserved } = this.view;
+        [this.free.visible, this.unobserved.visible] = [free, unobserved];
         const isFree = (flat) => keyframe.isObserved(flat) && !keyframe.isOccupied(flat);
         const isUnknown = (flat) => !keyframe.isObserved(flat) && !keyframe.isOccupied(flat);
-        const none = () => false;
-        const thinned = [
-            this.free.show(keyframe, slice, free ? isFree : none, freeColor(keyframe, way)),
-            this.unobserved.show(keyframe, slice, unobserved ? isUnknown : none, unobservedColor),
-        ];
-        const every = Math.max(...thinned);
-        this.panel.leftOut(every > 1 ? `Of the points, one in ${every} is shown.` : "");
+        const every = Math.max(
+            free ? this.free.show(keyframe, slice, isFree, freeColor(keyframe, way)) : 1,
+            unobserved ? this.unobserved.show(keyframe, slice, isUnknown, unobservedColor) : 1,
+        );
+        return every > 1 ? `Of the points, one in ${every} is shown.` : "";
     }
 
     /** What will probably be asked for next. */
@@ -226,30 +213,18 @@ class Viewer {
         this.renderer.setSize(width, height, false);
         const { left, bottom } = this.panel.room(width, height);
         this.camera.aspect = left / bottom;
-        // As much is seen across a narrow window as across a square one.
-        const half = Math.tan((FOV_DEG * Math.PI) / 360) / Math.min(this.camera.aspect, 1);
+        // As much is seen across a narrow window as across a wide one.
+        const half = Math.tan((FOV_DEG * Math.PI) / 360) / Math.min(this.camera.aspect / 1.3, 1);
         this.camera.fov = (2 * Math.atan(half) * 180) / Math.PI;
         this.camera.setViewOffset(left, bottom, 0, 0, width, height);
         this.wake();
     }
 
-    /** Shows keyframe after keyframe, as fast as they were recorded. */
-    async play(isPlaying) {
+    /** Shows keyframe after keyframe, or stops. */
+    play(isPlaying) {
         this.isPlaying = isPlaying;
         this.panel.showPlaying(isPlaying);
-        const run = (this.run = {});
-        while (this.isPlaying && this.run === run) {
-            const last = this.keyframes.length - 1;
-            const due = performance.now() + this.secondsToNext() * 1000;
-            await this.step(this.view.at === last ? -last : 1);
-            await new Promise((done) => setTimeout(done, Math.max(due - performance.now(), 15)));
-        }
-    }
-
-    secondsToNext() {
-        const [now, next] = [0, 1].map((by) => this.scene.keyframes[this.view.at + by]?.time_ns ?? null);
-        if (now === null || next === null) return 1 / PLAYED_HZ;
-        return Math.min(Math.max(Number(BigInt(next) - BigInt(now)) / 1e9, 0.05), 2);
+        play(this);
     }
 
     /** Picks the voxel under a place of the canvas, CSS pixels. */
@@ -301,15 +276,6 @@ class Viewer {
 function mostOf({ keyframes }) {
     const most = (name) => Math.max(0, ...keyframes.map((keyframe) => keyframe.most[name] ?? 0));
     return { hits: most("hits"), crossings: most("crossings") };
-}
-
-/** Lines around the picked voxel, seen through all. */
-function frameOfPick() {
-    const edges = new THREE.EdgesGeometry(new THREE.BoxGeometry(1.04, 1.04, 1.04));
-    const frame = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: 0xffffff, depthTest: false }));
-    frame.renderOrder = 2;
-    frame.visible = false;
-    return frame;
 }
 
 const text = (id) => document.getElementById(id).textContent;

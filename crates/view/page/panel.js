@@ -142,7 +142,8 @@ export class Panel {
         return row;
     }
 
-    updateSlice({ shape, min_m, size_m }, { axis, at }, counts) {
+    updateSlice(keyframe, { axis, at }, counts) {
+        const { shape, min_m, size_m } = keyframe;
         for (const button of $("slice-axis").children) {
             button.setAttribute("aria-pressed", button.dataset.axis === String(axis ?? ""));
         }
@@ -152,6 +153,8 @@ export class Panel {
             $("slice-at").value = at;
             $("slice-m").textContent = `${"xyz"[axis]} ${(min_m[axis] + (at + 0.5) * size_m[axis]).toFixed(2)} m`;
         }
+        $("free-name").textContent = keyframe.emptyName();
+        $("unobserved-row").hidden = counts.unobserved === 0 && !keyframe.has("mask_lidar");
         for (const state of ["free", "unobserved"]) $(`${state}-count`).textContent = number(counts[state]);
     }
 

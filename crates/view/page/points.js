@@ -51,7 +51,6 @@ export class VoxelPoints extends THREE.Points {
         this.geometry.setAttribute("tint", new THREE.BufferAttribute(tints, 4, true));
         this.material.uniforms.min_m.value = keyframe.min_m;
         this.material.uniforms.size_m.value = keyframe.size_m;
-        this.visible = flats.length > 0;
         return every;
     }
 }

@@ -87,3 +87,12 @@ function wayOf({ keyframes, world_from_grid: here }) {
     const points = places.slice(1).flatMap((place, at) => [places[at], place]);
     return segments(points, WAY, 0.7);
 }
+
+/** Lines around the picked voxel, seen through all. */
+export function frameOfPick() {
+    const edges = new THREE.EdgesGeometry(new THREE.BoxGeometry(1.04, 1.04, 1.04));
+    const frame = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: 0xffffff, depthTest: false }));
+    frame.renderOrder = 2;
+    frame.visible = false;
+    return frame;
+}

@@ -53,7 +53,7 @@ struct Neighbors {
 
 impl Neighbors {
     fn of(counts: &[u16], [_, ny, nz]: [usize; 3], flat: usize) -> Self {
-        let (slab, has_x, has_y) = (ny * nz, flat >= ny * nz, flat / nz % ny > 0);
+        let (slab, has_x, has_y) = (ny * nz, flat >= ny * nz, !(flat / nz).is_multiple_of(ny));
         let at =
             |is_there: bool, back: usize| if is_there { counts[flat - back].into() } else { 0 };
         Self { x: at(has_x, slab), y: at(has_y, nz), both: at(has_x && has_y, slab + nz) }

@@ -1,7 +1,7 @@
 //! The page's own scripts, put together.
 
 /// Modules in an order in which each stands behind those that it imports.
-const MODULES: [&str; 17] = [
+const MODULES: [&str; 19] = [
     include_str!("../../page/decode.js"),
     include_str!("../../page/keyframes.js"),
     include_str!("../../page/voxels.js"),
@@ -18,6 +18,8 @@ const MODULES: [&str; 17] = [
     include_str!("../../page/facts.js"),
     include_str!("../../page/panel.js"),
     include_str!("../../page/hash.js"),
+    include_str!("../../page/keys.js"),
+    include_str!("../../page/play.js"),
     include_str!("../../page/main.js"),
 ];
 
