@@ -4,7 +4,7 @@ use image::RgbImage;
 use occlabel_core::Fault;
 use occlabel_dialects::KeyframeKey;
 use occlabel_labels::write_file;
-use occlabel_view::{Difference, Painted, Plate, ShownKeyframe, ShownScene, Strip, png};
+use occlabel_view::{Difference, Page, Painted, ShownKeyframe, ShownScene, Strip, png};
 
 use crate::args::{PictureArg, ViewArgs};
 use crate::console::Console;
@@ -44,22 +44,22 @@ impl Subject<'_> {
         let (flags, keyframe) = (&self.args.picture, self.labels.read(key)?);
         let labels = Painted::of(&keyframe, self.scene);
         let title = self.title(key, self.told());
-        let plate = self.plate(&title);
+        let page = self.page(&title);
         Ok(match flags.kind() {
-            PictureArg::BirdsEye => plate.birds_eye(&labels),
-            PictureArg::Slices => plate.slices(&labels, flags.across()),
-            PictureArg::Overlay => self.by_cameras(&plate, &labels, key)?,
+            PictureArg::BirdsEye => page.birds_eye(&labels),
+            PictureArg::Slices => page.slices(&labels, flags.across()),
+            PictureArg::Overlay => self.by_cameras(&page, &labels, key)?,
             PictureArg::Perspective if flags.camera.is_some() => {
-                self.by_cameras(&plate, &labels, key)?
+                self.by_cameras(&page, &labels, key)?
             }
-            PictureArg::Perspective => plate.perspective(&labels, &flags.aim()),
-            _ => plate.sheet(&labels, &flags.aim()),
+            PictureArg::Perspective => page.perspective(&labels, &flags.aim()),
+            _ => page.sheet(&labels, &flags.aim()),
         })
     }
 
     fn by_cameras(
         &self,
-        plate: &Plate,
+        page: &Page,
         labels: &Painted,
         key: &KeyframeKey,
     ) -> Result<RgbImage, Stop> {
@@ -69,14 +69,14 @@ impl Subject<'_> {
         let shots = shots(&log, &key.token, args.picture.camera.as_deref())?;
         let views: Vec<_> = shots.iter().map(|shot| shot.view()).collect();
         Ok(match args.picture.kind() {
-            PictureArg::Perspective => plate.through_camera(labels, &views[0]),
-            _ => plate.overlay(labels, &views),
+            PictureArg::Perspective => page.through_camera(labels, &views[0]),
+            _ => page.overlay(labels, &views),
         })
     }
 
     fn strip(&self, keys: &[KeyframeKey]) -> Result<RgbImage, Stop> {
         let title = format!("{}: {} keyframes from above", self.scene.name, keys.len());
-        let mut strip = Strip::new(self.plate(&title), self.labels.set.spec(), keys.len());
+        let mut strip = Strip::new(self.page(&title), self.labels.set.spec(), keys.len());
         let (mut first, mut last) = (None, None);
         for key in keys {
             let keyframe = self.labels.read(key)?;
@@ -108,12 +108,12 @@ impl Subject<'_> {
             Difference { from: Painted::of(&from, self.scene), to: Painted::of(&to, self.scene) };
         let what = format!("{} against {}", self.args.labels.display(), against.display());
         let title = self.title(key, what);
-        Ok(self.plate(&title).difference(&sets, &args.aim()))
+        Ok(self.page(&title).difference(&sets, &args.aim()))
     }
 
-    fn plate<'a>(&self, title: &'a str) -> Plate<'a> {
+    fn page<'a>(&self, title: &'a str) -> Page<'a> {
         let (width, height) = self.args.picture.size.unwrap_or(USUAL_PX);
-        Plate { width, height, title }
+        Page { width, height, title }
     }
 
     fn title(&self, key: &KeyframeKey, what: String) -> String {

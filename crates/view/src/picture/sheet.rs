@@ -6,11 +6,11 @@ use crate::picture::birds_eye::{legend, map, map_with_foot, mark_map};
 use crate::picture::color::PAPER;
 use crate::picture::column::columns;
 use crate::picture::orbit::Aim;
+use crate::picture::page::Page;
 use crate::picture::painted::Painted;
 use crate::picture::perspective::cubes;
-use crate::picture::plate::Plate;
 
-impl Plate<'_> {
+impl Page<'_> {
     /// The labels from above, and beside or under it as lit cubes.
     ///
     /// # Panics

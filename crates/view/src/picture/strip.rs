@@ -6,13 +6,13 @@ use occlabel_core::GridSpec;
 use crate::picture::birds_eye::{map, map_size, mark_ego, with_states};
 use crate::picture::column::{Column, columns};
 use crate::picture::legend::Legend;
+use crate::picture::page::Page;
 use crate::picture::painted::Painted;
-use crate::picture::plate::Plate;
 use crate::picture::tiles::Tiles;
 
 /// A sheet of keyframes from above, drawn one at a time, so that no two have to be held.
 pub struct Strip<'a> {
-    plate: Plate<'a>,
+    page: Page<'a>,
     tiles: Tiles,
     drawn: u32,
     present: [bool; 256],
@@ -22,9 +22,9 @@ pub struct Strip<'a> {
 
 impl<'a> Strip<'a> {
     /// A strip for a number of keyframes in grids like this.
-    pub fn new(plate: Plate<'a>, spec: &GridSpec, keyframes: usize) -> Self {
-        let tiles = Tiles::new(&vec![aspect(spec); keyframes], plate.body_px());
-        Self { plate, tiles, drawn: 0, present: [false; 256], states: Vec::new() }
+    pub fn new(page: Page<'a>, spec: &GridSpec, keyframes: usize) -> Self {
+        let tiles = Tiles::new(&vec![aspect(spec); keyframes], page.body_px());
+        Self { page, tiles, drawn: 0, present: [false; 256], states: Vec::new() }
     }
 
     /// Draws the next keyframe.
@@ -52,7 +52,7 @@ impl<'a> Strip<'a> {
         let classes: Vec<u8> = (0..255).filter(|&id| self.present[usize::from(id)]).collect();
         let legend = Legend::default().with_classes(labels, &classes);
         let legend = with_states(legend, labels, &self.states);
-        self.plate.around(&self.tiles.into_picture(), &legend)
+        self.page.around(&self.tiles.into_picture(), &legend)
     }
 }
 
