@@ -8,9 +8,9 @@ use crate::picture::color::{FREE, UNOBSERVED, lit};
 use crate::picture::cubes::Cubes;
 use crate::picture::legend::Legend;
 use crate::picture::orbit::{Aim, Orbit};
-use crate::picture::page::Page;
+use crate::picture::page::{Page, blank};
 use crate::picture::painted::Painted;
-use crate::picture::perspective::{backdrop, mark_ego};
+use crate::picture::perspective::mark_ego;
 use crate::picture::sheet::two;
 
 /// What became of a voxel from the first set to the second.
@@ -141,7 +141,7 @@ fn legend(sets: &Difference) -> Legend {
 
 fn cubes(sets: &Difference, orbit: &Orbit) -> RgbImage {
     let lens = orbit.lens();
-    let mut scene = RgbImage::from_fn(orbit.width, orbit.height, |_, y| backdrop(y, orbit.height));
+    let mut scene = blank(orbit.width, orbit.height);
     let cubes = Cubes {
         spec: sets.from.spec,
         solid: |flat| sets.occupied(flat),

@@ -3,12 +3,15 @@
 use image::{RgbImage, imageops};
 
 use crate::picture::canvas::At;
-use crate::picture::color::{FAINT_INK, PAPER};
+use crate::picture::color::FAINT_INK;
 use crate::picture::font::{fitting, write};
+use crate::picture::page::blank;
 
 const CAPTION_PX: u32 = 24;
 const CAPTION_STEP_PX: f64 = 1.5;
 const GAP_PX: u32 = 10;
+/// Long rows are preferred to pictures that are larger by no more than this.
+const GOOD_SHARE: f64 = 0.85;
 
 /// Room for pictures of known proportions, row by row, with a caption above each.
 pub(crate) struct Tiles {
@@ -19,7 +22,7 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
-    /// The division of a room that leaves the pictures largest; `aspects` are their widths by their
+    /// The division of a room that leaves the pictures large; `aspects` are their widths by their
     /// heights.
     pub(crate) fn new(aspects: &[f64], room: (u32, u32)) -> Self {
         let count = (aspects.len() as u32).max(1);
@@ -31,8 +34,10 @@ impl Tiles {
             };
             aspects.iter().map(area).sum()
         };
-        let columns = (1..=count).rev().max_by_key(area).unwrap_or(1);
-        let picture = RgbImage::from_pixel(room.0, room.1, PAPER);
+        let largest = (1..=count).map(|columns| area(&columns)).max().unwrap_or(0);
+        let is_good = |columns: &u32| area(columns) as f64 >= GOOD_SHARE * largest as f64;
+        let columns = (1..=count).rev().find(is_good).unwrap_or(1);
+        let picture = blank(room.0, room.1);
         Self { columns, cell: cell(columns, count, room), picture }
     }
 
@@ -84,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tiles_are_as_large_as_can_be_and_do_not_overlap() {
+    fn six_images_stand_in_two_rows_and_do_not_overlap() {
         let tiles = Tiles::new(&[16.0 / 9.0; 6], (1330, 856));
         assert_eq!(tiles.columns, 3);
         let (width, height) = tiles.size_px(16.0 / 9.0);
