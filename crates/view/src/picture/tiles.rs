@@ -48,7 +48,7 @@ impl Tiles {
 
     /// Draws a tile in its place.
     pub(crate) fn put(&mut self, place: u32, tile: &RgbImage, caption: &str) {
-        let (left, top) = self.corner(place, tile.width());
+        let (left, top) = self.corner(place, tile.dimensions());
         imageops::replace(&mut self.picture, tile, left.into(), top.into());
         let text = fitting(caption, CAPTION_STEP_PX, f64::from(tile.width()));
         let at = At::new(f64::from(left), f64::from(top) - 16.0);
@@ -56,10 +56,11 @@ impl Tiles {
     }
 
     /// Upper left corner of a tile.
-    fn corner(&self, place: u32, width: u32) -> (u32, u32) {
+    fn corner(&self, place: u32, (width, height): (u32, u32)) -> (u32, u32) {
         let (column, row) = (place % self.columns, place / self.columns);
-        let indent = inner(self.cell).0.saturating_sub(width) / 2;
-        (GAP_PX + column * self.cell.0 + indent, row * self.cell.1 + CAPTION_PX)
+        let (room_w, room_h) = inner(self.cell);
+        let [right, down] = [room_w.saturating_sub(width), room_h.saturating_sub(height)];
+        (GAP_PX + column * self.cell.0 + right / 2, CAPTION_PX + row * self.cell.1 + down / 2)
     }
 
     /// All that was drawn.
@@ -94,7 +95,7 @@ mod tests {
         assert_eq!(tiles.columns, 3);
         let (width, height) = tiles.size_px(16.0 / 9.0);
         assert!((430..440).contains(&width) && height == width * 9 / 16);
-        let corners: Vec<_> = (0..6).map(|place| tiles.corner(place, width)).collect();
+        let corners: Vec<_> = (0..6).map(|place| tiles.corner(place, (width, height))).collect();
         assert!(corners[1].0 >= corners[0].0 + width && corners[3].1 > corners[0].1 + height);
         assert!(corners.iter().all(|(x, y)| x + width <= 1330 && y + height <= 856));
     }
