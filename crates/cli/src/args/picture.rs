@@ -21,7 +21,7 @@ pub(crate) struct PictureArgs {
     /// difference). [default: 200]
     #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub(crate) azimuth_deg: Option<f64>,
-    /// From how high: 0 level, 90 from straight above. [default: 35]
+    /// From how high: 0 level, 90 from straight above. [default: 35, beside a map 50]
     #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub(crate) elevation_deg: Option<f64>,
     /// From how far from the grid's middle. [default: so that the grid fills the picture]

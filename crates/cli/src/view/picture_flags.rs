@@ -30,9 +30,13 @@ impl PictureArgs {
         }
     }
 
+    /// Whether cameras of the log are drawn.
+    pub(crate) fn needs_log(&self) -> bool {
+        self.kind() == PictureArg::Overlay || self.camera.is_some()
+    }
+
     fn check_needs(&self, kind: PictureArg, has_log: bool) -> Result<(), Fault> {
-        let needs_log = kind == PictureArg::Overlay || self.camera.is_some();
-        if needs_log && !has_log {
+        if self.needs_log() && !has_log {
             let expected = "the log, which has the cameras: --format F --input LOG";
             return Err(fault(kind, expected, "none"));
         }
@@ -66,7 +70,10 @@ impl PictureArgs {
 
     /// From where a perspective picture is taken.
     pub(crate) fn aim(&self) -> Aim {
-        let usual = Aim::default();
+        let usual = match self.kind() {
+            PictureArg::Perspective => Aim::default(),
+            _ => Aim { elevation_rad: STEEP_DEG.to_radians(), ..Aim::default() },
+        };
         Aim {
             azimuth_rad: self.azimuth_deg.map_or(usual.azimuth_rad, f64::to_radians),
             elevation_rad: self.elevation_deg.map_or(usual.elevation_rad, f64::to_radians),
@@ -83,6 +90,9 @@ impl PictureArgs {
         }
     }
 }
+
+/// From so high is looked beside a map, where the picture is not wide.
+const STEEP_DEG: f64 = 50.0;
 
 const ORBIT: [&str; 3] = ["--azimuth-deg", "--elevation-deg", "--distance-m"];
 

@@ -1,12 +1,14 @@
 //! Labels as a PNG.
 
+use std::path::Path;
+
 use image::RgbImage;
 use occlabel_core::Fault;
 use occlabel_dialects::KeyframeKey;
 use occlabel_labels::write_file;
-use occlabel_view::{Difference, Page, Painted, ShownKeyframe, ShownScene, Strip, png};
+use occlabel_view::{Across, Difference, Page, Painted, ShownScene, Strip, png};
 
-use crate::args::{PictureArg, ViewArgs};
+use crate::args::{LogArgs, PictureArg, ViewArgs};
 use crate::console::Console;
 use crate::exit::Stop;
 use crate::label_pairs::LabelPairs;
@@ -23,10 +25,10 @@ pub(crate) fn make(args: &ViewArgs, labels: &ShownSet, console: &Console) -> Res
     let keys = labels.keyframes(&scene.name, &args.keyframes).map_err(Stop::usage)?;
     let Some(key) = keys.get(keys.len() / 2) else { return Ok(()) };
     let subject = Subject { args, labels, scene: &scene };
-    let picture = match args.picture.kind() {
-        PictureArg::Strip => subject.strip(&keys)?,
-        PictureArg::Difference => subject.difference(key)?,
-        _ => subject.of_keyframe(key)?,
+    let picture = match &args.picture.against {
+        Some(against) => subject.difference(key, against)?,
+        None if args.picture.kind() == PictureArg::Strip => subject.strip(&keys)?,
+        None => subject.of_keyframe(key)?,
     };
     console.info(&format!("{}: keyframe {}", scene.name, key.token));
     Ok(write_file(&args.output, &png(&picture))?)
@@ -45,13 +47,12 @@ impl Subject<'_> {
         let labels = Painted::of(&keyframe, self.scene);
         let title = self.title(key, self.told());
         let page = self.page(&title);
+        if let Some(log) = self.args.log.as_ref().filter(|_| flags.needs_log()) {
+            return self.by_cameras(&page, &labels, key, log);
+        }
         Ok(match flags.kind() {
             PictureArg::BirdsEye => page.birds_eye(&labels),
             PictureArg::Slices => page.slices(&labels, flags.across()),
-            PictureArg::Overlay => self.by_cameras(&page, &labels, key)?,
-            PictureArg::Perspective if flags.camera.is_some() => {
-                self.by_cameras(&page, &labels, key)?
-            }
             PictureArg::Perspective => page.perspective(&labels, &flags.aim()),
             _ => page.sheet(&labels, &flags.aim()),
         })
@@ -62,9 +63,9 @@ impl Subject<'_> {
         page: &Page,
         labels: &Painted,
         key: &KeyframeKey,
+        log: &LogArgs,
     ) -> Result<RgbImage, Stop> {
         let args = self.args;
-        let Some(log) = &args.log else { return Err(Stop::usage(no_log())) };
         let log = LoggedScene::open(log, &args.config, self.labels, &self.scene.name)?;
         let shots = shots(&log, &key.token, args.picture.camera.as_deref())?;
         let views: Vec<_> = shots.iter().map(|shot| shot.view()).collect();
@@ -75,9 +76,12 @@ impl Subject<'_> {
     }
 
     fn strip(&self, keys: &[KeyframeKey]) -> Result<RgbImage, Stop> {
-        let title = format!("{}: {} keyframes from above", self.scene.name, keys.len());
-        let mut strip = Strip::new(self.page(&title), self.labels.set.spec(), keys.len());
-        let (mut first, mut last) = (None, None);
+        let [x_m, y_m, _] = self.extent_m();
+        let what = format!("{} keyframes from above, up x {x_m}, left y {y_m} m", keys.len());
+        let title = format!("{}: {what}", self.scene.name);
+        let (page, spec) = (self.page(&title), self.labels.set.spec());
+        let mut strip = Strip::new(page, &self.scene.palette, spec, keys.len());
+        let mut first = None;
         for key in keys {
             let keyframe = self.labels.read(key)?;
             let begin = *first.get_or_insert(keyframe.time);
@@ -85,22 +89,20 @@ impl Subject<'_> {
             let time = since_s.map_or_else(String::new, |s| format!("{s:.1} s  "));
             let caption = format!("{time}{}", key.token);
             strip.add(&Painted::of(&keyframe, self.scene), &caption);
-            last = Some(keyframe);
         }
-        let last: ShownKeyframe = last.ok_or_else(|| Stop::usage(no_log()))?;
-        Ok(strip.finish(&Painted::of(&last, self.scene)))
+        Ok(strip.finish())
     }
 
-    fn difference(&self, key: &KeyframeKey) -> Result<RgbImage, Stop> {
+    fn difference(&self, key: &KeyframeKey, against: &Path) -> Result<RgbImage, Stop> {
         let args = &self.args.picture;
-        let Some(against) = args.against.as_deref() else { return Err(Stop::usage(no_log())) };
         let dialect = args.against_dialect.as_deref();
         let mine = (self.args.labels.as_path(), self.args.dialect.as_deref());
         let pairs = LabelPairs::open(mine, (against, dialect), &[]).map_err(Stop::usage)?;
         let pair = pairs.both.iter().find(|(one, _)| one == key);
         let other = pair.map(|(_, other)| other).ok_or_else(|| {
-            let found = format!("no keyframe {}", key.token);
-            Stop::usage(Fault::new("keyframe", against.display().to_string(), "it there", found))
+            let place = against.display().to_string();
+            let found = format!("no `{}`", key.token);
+            Stop::usage(Fault::new("keyframe", place, "the keyframes of the labels", found))
         })?;
         let others = ShownSet::open(against, dialect).map_err(Stop::usage)?;
         let (from, to) = (self.labels.read(key)?, others.read(other)?);
@@ -121,6 +123,21 @@ impl Subject<'_> {
         format!("{scene}keyframe {}: {what}", key.token)
     }
 
+    /// Which way cuts lie, and how large they are.
+    fn slices_told(&self) -> String {
+        let extent = self.extent_m();
+        match self.args.picture.across() {
+            Across::X => format!("slices, up z {}, left y {} m", extent[2], extent[1]),
+            Across::Y => format!("slices, up z {}, left x {} m", extent[2], extent[0]),
+            Across::Z => format!("slices, up x {}, left y {} m", extent[0], extent[1]),
+        }
+    }
+
+    fn extent_m(&self) -> [f64; 3] {
+        let spec = self.labels.set.spec();
+        (spec.max_m() - spec.min_m()).map(metres).into()
+    }
+
     /// What the picture shows, for its title.
     fn told(&self) -> String {
         let args = &self.args.picture;
@@ -130,11 +147,13 @@ impl Subject<'_> {
             (PictureArg::Perspective, None) => "voxels".to_owned(),
             (PictureArg::Perspective, Some(camera)) => format!("voxels as {camera} sees them"),
             (PictureArg::Overlay, _) => "labels over the images".to_owned(),
+            (PictureArg::Slices, _) => self.slices_told(),
             (kind, _) => name(kind),
         }
     }
 }
 
-fn no_log() -> Fault {
-    Fault::new("flag", "view", "what the picture needs", "nothing")
+/// A length as a text, to the millimetre.
+fn metres(length_m: f64) -> f64 {
+    (length_m * 1000.0).round() / 1000.0
 }

@@ -18,7 +18,7 @@ use crate::picture::color::{FREE, PAPER, UNLABELLED, UNOBSERVED, lit};
 use crate::picture::column::{Column, columns};
 use crate::picture::legend::Legend;
 use crate::picture::marks;
-use crate::picture::page::Page;
+use crate::picture::page::{Page, blank};
 use crate::picture::painted::{Painted, hidden};
 
 pub(crate) const MARGIN_PX: u32 = 28;
@@ -78,23 +78,25 @@ pub(crate) fn map_with_foot(
 ) -> RgbImage {
     let room = (width.saturating_sub(2 * MARGIN_PX), height.saturating_sub(FOOT_PX + 6));
     let map = draw(map_size(spec, room));
-    let mut body = RgbImage::from_pixel(width, height, PAPER);
+    let mut body = blank(width, height);
     let left = (width - map.width().min(width)) / 2;
-    imageops::replace(&mut body, &map, left.into(), 6);
-    mark_foot(&mut body, spec, (left, 6), map.dimensions());
+    let top = height.saturating_sub(map.height() + FOOT_PX) / 2;
+    imageops::replace(&mut body, &map, left.into(), top.into());
+    mark_foot(&mut body, spec, (left, top), map.dimensions());
     body
 }
 
 /// What the classes and the states of columns look like.
 pub(crate) fn legend(labels: &Painted, columns: &[Column]) -> Legend {
-    with_states(Legend::of(labels), labels, columns)
+    let legend = with_states(Legend::of(labels), labels.free_name(), columns);
+    if labels.has_cameras() { legend.with_hidden() } else { legend }
 }
 
 /// The legend with the states that occur in columns.
-pub(crate) fn with_states(mut legend: Legend, labels: &Painted, columns: &[Column]) -> Legend {
+pub(crate) fn with_states(mut legend: Legend, free: &str, columns: &[Column]) -> Legend {
     let has = |is: fn(&Column) -> bool| columns.iter().any(is);
     if has(|column| matches!(column, Column::Free { .. })) {
-        legend = legend.with(FREE, labels.free_name());
+        legend = legend.with(FREE, free);
     }
     if has(|column| *column == Column::Unobserved) {
         legend = legend.with(UNOBSERVED, "unobserved");
@@ -102,7 +104,7 @@ pub(crate) fn with_states(mut legend: Legend, labels: &Painted, columns: &[Colum
     if has(|column| *column == Column::Unlabelled) {
         legend = legend.with(UNLABELLED, "no label");
     }
-    if labels.has_cameras() { legend.with_hidden() } else { legend }
+    legend
 }
 
 /// The map with rings and the ego on it.

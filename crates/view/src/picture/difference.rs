@@ -8,9 +8,9 @@ use crate::picture::color::{FREE, UNOBSERVED, lit};
 use crate::picture::cubes::Cubes;
 use crate::picture::legend::Legend;
 use crate::picture::orbit::{Aim, Orbit};
-use crate::picture::page::Page;
+use crate::picture::page::{Page, blank};
 use crate::picture::painted::Painted;
-use crate::picture::perspective::{backdrop, mark_ego};
+use crate::picture::perspective::mark_ego;
 use crate::picture::sheet::two;
 
 /// What became of a voxel from the first set to the second.
@@ -30,7 +30,7 @@ const CHANGES: [(Change, &str, Rgb<u8>); 4] = [
     (Change::Gained, "gained", Rgb([70, 165, 255])),
     (Change::Lost, "lost", Rgb([255, 130, 40])),
     (Change::Class, "class changed", Rgb([255, 240, 120])),
-    (Change::Mask, "mask changed", Rgb([150, 105, 170])),
+    (Change::Mask, "mask changed", Rgb([104, 78, 128])),
 ];
 /// Occupied by one class in both.
 const SAME: Rgb<u8> = Rgb([148, 154, 164]);
@@ -107,7 +107,7 @@ fn color_of(change: Change) -> Rgb<u8> {
 
 impl Page<'_> {
     /// Where two sets differ, from above and as cubes, counted in the legend. From above a column
-    /// shows its topmost change of occupancy or class; else one of the masks; else what it is.
+    /// shows its topmost change of occupancy or class; else what stands there; else a change of the masks.
     ///
     /// # Panics
     /// If the grids are not of one spec's shape.
@@ -141,7 +141,7 @@ fn legend(sets: &Difference) -> Legend {
 
 fn cubes(sets: &Difference, orbit: &Orbit) -> RgbImage {
     let lens = orbit.lens();
-    let mut scene = RgbImage::from_fn(orbit.width, orbit.height, |_, y| backdrop(y, orbit.height));
+    let mut scene = blank(orbit.width, orbit.height);
     let cubes = Cubes {
         spec: sets.from.spec,
         solid: |flat| sets.occupied(flat),
@@ -175,14 +175,13 @@ fn look_down(sets: &Difference, voxels: std::ops::Range<usize>) -> Look {
     if let Some(change) = top_down().find_map(changed) {
         return (4, color_of(change));
     }
-    let masked = top_down().any(|flat| sets.change(flat).is_some());
     if let Some(flat) = top_down().find(|&flat| sets.occupied(flat)) {
         let height = (flat - voxels.start + 1) as f64 / voxels.len() as f64;
-        let same = lit(SAME, 0.5 + 0.4 * height);
-        return (2, if masked { color_of(Change::Mask) } else { same });
+        return (3, lit(SAME, 0.5 + 0.4 * height));
     }
+    let masked = top_down().any(|flat| sets.change(flat).is_some());
     match top_down().any(|flat| sets.from.observed(flat)) {
-        _ if masked => (3, color_of(Change::Mask)),
+        _ if masked => (2, color_of(Change::Mask)),
         true => (1, FREE),
         false => (0, UNOBSERVED),
     }

@@ -1,6 +1,7 @@
 //! Which colour means what.
 
 use image::{Rgb, RgbImage};
+use occlabel_core::Palette;
 
 use crate::picture::canvas::{At, polygon};
 use crate::picture::color::INK;
@@ -21,14 +22,13 @@ pub(crate) struct Legend {
 impl Legend {
     /// The classes that occur in the labels.
     pub(crate) fn of(labels: &Painted) -> Self {
-        Self::default().with_classes(labels, &labels.present())
+        Self::default().with_classes(labels.palette, &labels.present())
     }
 
-    /// The legend with classes, in the colours of the labels.
-    pub(crate) fn with_classes(self, labels: &Painted, classes: &[u8]) -> Self {
-        classes
-            .iter()
-            .fold(self, |legend, &id| legend.with(labels.color(id), &labels.palette.label(id)))
+    /// The legend with these classes.
+    pub(crate) fn with_classes(self, palette: &Palette, classes: &[u8]) -> Self {
+        let with = |legend: Self, &id: &u8| legend.with(Rgb(palette.color(id)), &palette.label(id));
+        classes.iter().fold(self, with)
     }
 
     /// The legend with one entry more.

@@ -3,7 +3,7 @@
 use image::{Rgb, RgbImage, imageops};
 
 use crate::picture::canvas::At;
-use crate::picture::color::{INK, PAPER};
+use crate::picture::color::{INK, PAPER, SKY, mix};
 use crate::picture::font::{fitting, write};
 use crate::picture::legend::Legend;
 
@@ -38,22 +38,9 @@ impl Page<'_> {
 
     /// The picture of a body, which has the size that [`Self::body_px`] says.
     pub(crate) fn around(&self, body: &RgbImage, legend: &Legend) -> RgbImage {
-        self.on(RgbImage::from_pixel(self.width, self.height, PAPER), body, legend)
-    }
-
-    /// The same over something else than paper: a colour a row of the picture.
-    pub(crate) fn around_over(
-        &self,
-        body: &RgbImage,
-        legend: &Legend,
-        behind: impl Fn(u32) -> Rgb<u8>,
-    ) -> RgbImage {
-        let picture = RgbImage::from_fn(self.width, self.height, |_, y| behind(y));
-        self.on(picture, body, legend)
-    }
-
-    fn on(&self, mut picture: RgbImage, body: &RgbImage, legend: &Legend) -> RgbImage {
         let top = self.title_px();
+        let behind = |y: u32| backdrop(y.saturating_sub(top), body.height());
+        let mut picture = RgbImage::from_fn(self.width, self.height, |_, y| behind(y));
         imageops::replace(&mut picture, body, 0, top.into());
         if top > 0 {
             let room_px = f64::from(self.width - (2 * LEFT_PX).min(self.width));
@@ -67,6 +54,16 @@ impl Page<'_> {
         }
         picture
     }
+}
+
+/// A picture with nothing on it.
+pub(crate) fn blank(width: u32, height: u32) -> RgbImage {
+    RgbImage::from_fn(width, height, |_, y| backdrop(y, height))
+}
+
+/// What is behind everything, by the row.
+fn backdrop(y: u32, height: u32) -> Rgb<u8> {
+    mix(SKY, PAPER, f64::from(y) / f64::from(height))
 }
 
 /// How much of a picture's width is left beside the legend.

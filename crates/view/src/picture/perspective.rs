@@ -4,15 +4,15 @@ use image::{Rgb, RgbImage};
 use nalgebra::Point3;
 use occlabel_core::{GridSpec, Pose};
 
-use crate::picture::color::{FLOOR, PAPER, SKY, mix};
+use crate::picture::color::FLOOR;
 use crate::picture::cubes::Cubes;
-use crate::picture::gaze::CameraGaze;
+use crate::picture::gaze::{CameraGaze, Gaze};
 use crate::picture::legend::Legend;
 use crate::picture::lens::Lens;
 use crate::picture::marks;
 use crate::picture::orbit::{Aim, Orbit};
 use crate::picture::overlay::CameraView;
-use crate::picture::page::{Page, body_width_px};
+use crate::picture::page::{Page, blank, body_width_px};
 use crate::picture::painted::{Painted, hidden};
 use crate::picture::tiles::fit;
 
@@ -25,7 +25,7 @@ use crate::picture::tiles::fit;
 pub fn perspective(labels: &Painted, orbit: &Orbit) -> RgbImage {
     let page = Page { width: orbit.width, height: orbit.height, title: "" };
     let body = Orbit { width: body_width_px(orbit.width), ..*orbit };
-    page.around_over(&cubes(labels, &body), &legend(labels), |y| backdrop(y, orbit.height))
+    page.around(&cubes(labels, &body), &legend(labels))
 }
 
 impl Page<'_> {
@@ -36,7 +36,7 @@ impl Page<'_> {
     /// If the grids are not of the spec's shape.
     pub fn perspective(&self, labels: &Painted, aim: &Aim) -> RgbImage {
         let body = cubes(labels, &aim.orbit(labels.spec, self.body_px()));
-        self.around_over(&body, &legend(labels), |y| backdrop(y, self.height))
+        self.around(&body, &legend(labels))
     }
 
     /// The same as a camera sees them, its own pose and distortion included.
@@ -47,9 +47,9 @@ impl Page<'_> {
         labels.check();
         let room = self.body_px();
         let (width, height) = fit(view.aspect(), room);
-        let mut scene = RgbImage::from_fn(width, height, |_, y| backdrop(y, height));
+        let mut scene = blank(width, height);
         render(labels, &view.gaze((width, height)), &mut scene);
-        let mut body = RgbImage::from_pixel(room.0, room.1, PAPER);
+        let mut body = blank(room.0, room.1);
         let (left, top) = ((room.0 - width.min(room.0)) / 2, (room.1 - height.min(room.1)) / 2);
         image::imageops::replace(&mut body, &scene, left.into(), top.into());
         self.around(&body, &legend(labels))
@@ -72,13 +72,13 @@ impl CameraView<'_> {
 pub(crate) fn cubes(labels: &Painted, orbit: &Orbit) -> RgbImage {
     labels.check();
     let lens = orbit.lens();
-    let mut scene = RgbImage::from_fn(orbit.width, orbit.height, |_, y| backdrop(y, orbit.height));
+    let mut scene = blank(orbit.width, orbit.height);
     render(labels, &lens, &mut scene);
     mark_ego(&mut scene, &lens, labels.spec);
     scene
 }
 
-fn render(labels: &Painted, gaze: &impl crate::picture::gaze::Gaze, scene: &mut RgbImage) {
+fn render(labels: &Painted, gaze: &impl Gaze, scene: &mut RgbImage) {
     let cameras = labels.has_cameras();
     let cubes = Cubes {
         spec: labels.spec,
@@ -98,11 +98,6 @@ pub(crate) fn legend(labels: &Painted) -> Legend {
 fn color(labels: &Painted, flat: usize, cameras: bool) -> Rgb<u8> {
     let color = labels.class(flat).map_or(FLOOR, |class| labels.color(class));
     if cameras && labels.unseen(flat) { hidden(color) } else { color }
-}
-
-/// What is behind everything, by the row.
-pub(crate) fn backdrop(y: u32, height: u32) -> Rgb<u8> {
-    mix(SKY, PAPER, f64::from(y) / f64::from(height))
 }
 
 pub(crate) fn mark_ego(scene: &mut RgbImage, lens: &Lens, spec: &GridSpec) {

@@ -3,10 +3,9 @@
 use image::{RgbImage, imageops};
 
 use crate::picture::birds_eye::{legend, map, map_with_foot, mark_map};
-use crate::picture::color::PAPER;
 use crate::picture::column::columns;
 use crate::picture::orbit::Aim;
-use crate::picture::page::Page;
+use crate::picture::page::{Page, blank};
 use crate::picture::painted::Painted;
 use crate::picture::perspective::cubes;
 
@@ -37,7 +36,7 @@ pub(crate) fn two(
     first: impl FnOnce((u32, u32)) -> RgbImage,
     second: impl FnOnce((u32, u32)) -> RgbImage,
 ) -> RgbImage {
-    let mut body = RgbImage::from_pixel(width, height, PAPER);
+    let mut body = blank(width, height);
     let (half, at) = match width >= height {
         true => ((width / 2, height), (width / 2, 0)),
         false => ((width, height / 2), (0, height / 2)),

@@ -1,7 +1,7 @@
 //! The keyframes of a scene, side by side.
 
 use image::RgbImage;
-use occlabel_core::GridSpec;
+use occlabel_core::{GridSpec, Palette};
 
 use crate::picture::birds_eye::{map, map_size, mark_ego, with_states};
 use crate::picture::column::{Column, columns};
@@ -13,18 +13,29 @@ use crate::picture::tiles::Tiles;
 /// A sheet of keyframes from above, drawn one at a time, so that no two have to be held.
 pub struct Strip<'a> {
     page: Page<'a>,
+    palette: &'a Palette,
     tiles: Tiles,
     drawn: u32,
     present: [bool; 256],
-    /// One column of each state that occurs.
+    /// One column of each state that occurs, and what free ones are called.
     states: Vec<Column>,
+    free_name: &'static str,
+    has_cameras: bool,
 }
 
 impl<'a> Strip<'a> {
-    /// A strip for a number of keyframes in grids like this.
-    pub fn new(page: Page<'a>, spec: &GridSpec, keyframes: usize) -> Self {
-        let tiles = Tiles::new(&vec![aspect(spec); keyframes], page.body_px());
-        Self { page, tiles, drawn: 0, present: [false; 256], states: Vec::new() }
+    /// A strip for a number of keyframes of one palette, in grids like this.
+    pub fn new(page: Page<'a>, palette: &'a Palette, spec: &GridSpec, keyframes: usize) -> Self {
+        Self {
+            page,
+            palette,
+            tiles: Tiles::new(&vec![aspect(spec); keyframes], page.body_px()),
+            drawn: 0,
+            present: [false; 256],
+            states: Vec::new(),
+            free_name: "free",
+            has_cameras: false,
+        }
     }
 
     /// Draws the next keyframe.
@@ -39,19 +50,27 @@ impl<'a> Strip<'a> {
         mark_ego(&mut tile, labels.spec, (f64::from(size.0) / 700.0).clamp(0.35, 1.0));
         self.tiles.put(self.drawn, &tile, caption);
         self.drawn += 1;
+        self.note(labels, &columns);
+    }
+
+    /// What the legend will have to tell.
+    fn note(&mut self, labels: &Painted, columns: &[Column]) {
         labels.present().into_iter().for_each(|class| self.present[usize::from(class)] = true);
+        self.free_name = labels.free_name();
+        self.has_cameras |= labels.has_cameras();
         for column in columns {
-            if column.top().is_none() && !self.states.contains(&column) {
-                self.states.push(column);
+            if column.top().is_none() && !self.states.contains(column) {
+                self.states.push(*column);
             }
         }
     }
 
-    /// The picture, with a legend in the colours of one of the keyframes.
-    pub fn finish(self, labels: &Painted) -> RgbImage {
+    /// The picture.
+    pub fn finish(self) -> RgbImage {
         let classes: Vec<u8> = (0..255).filter(|&id| self.present[usize::from(id)]).collect();
-        let legend = Legend::default().with_classes(labels, &classes);
-        let legend = with_states(legend, labels, &self.states);
+        let legend = Legend::default().with_classes(self.palette, &classes);
+        let legend = with_states(legend, self.free_name, &self.states);
+        let legend = if self.has_cameras { legend.with_hidden() } else { legend };
         self.page.around(&self.tiles.into_picture(), &legend)
     }
 }

@@ -3,12 +3,15 @@
 use image::{RgbImage, imageops};
 
 use crate::picture::canvas::At;
-use crate::picture::color::{FAINT_INK, PAPER};
+use crate::picture::color::FAINT_INK;
 use crate::picture::font::{fitting, write};
+use crate::picture::page::blank;
 
 const CAPTION_PX: u32 = 24;
 const CAPTION_STEP_PX: f64 = 1.5;
 const GAP_PX: u32 = 10;
+/// Long rows are preferred to pictures that are larger by no more than this.
+const GOOD_SHARE: f64 = 0.85;
 
 /// Room for pictures of known proportions, row by row, with a caption above each.
 pub(crate) struct Tiles {
@@ -19,7 +22,7 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
-    /// The division of a room that leaves the pictures largest; `aspects` are their widths by their
+    /// The division of a room that leaves the pictures large; `aspects` are their widths by their
     /// heights.
     pub(crate) fn new(aspects: &[f64], room: (u32, u32)) -> Self {
         let count = (aspects.len() as u32).max(1);
@@ -31,8 +34,10 @@ impl Tiles {
             };
             aspects.iter().map(area).sum()
         };
-        let columns = (1..=count).rev().max_by_key(area).unwrap_or(1);
-        let picture = RgbImage::from_pixel(room.0, room.1, PAPER);
+        let largest = (1..=count).map(|columns| area(&columns)).max().unwrap_or(0);
+        let is_good = |columns: &u32| area(columns) as f64 >= GOOD_SHARE * largest as f64;
+        let columns = (1..=count).rev().find(is_good).unwrap_or(1);
+        let picture = blank(room.0, room.1);
         Self { columns, cell: cell(columns, count, room), picture }
     }
 
@@ -43,7 +48,7 @@ impl Tiles {
 
     /// Draws a tile in its place.
     pub(crate) fn put(&mut self, place: u32, tile: &RgbImage, caption: &str) {
-        let (left, top) = self.corner(place, tile.width());
+        let (left, top) = self.corner(place, tile.dimensions());
         imageops::replace(&mut self.picture, tile, left.into(), top.into());
         let text = fitting(caption, CAPTION_STEP_PX, f64::from(tile.width()));
         let at = At::new(f64::from(left), f64::from(top) - 16.0);
@@ -51,10 +56,11 @@ impl Tiles {
     }
 
     /// Upper left corner of a tile.
-    fn corner(&self, place: u32, width: u32) -> (u32, u32) {
+    fn corner(&self, place: u32, (width, height): (u32, u32)) -> (u32, u32) {
         let (column, row) = (place % self.columns, place / self.columns);
-        let indent = inner(self.cell).0.saturating_sub(width) / 2;
-        (GAP_PX + column * self.cell.0 + indent, row * self.cell.1 + CAPTION_PX)
+        let (room_w, room_h) = inner(self.cell);
+        let [right, down] = [room_w.saturating_sub(width), room_h.saturating_sub(height)];
+        (GAP_PX + column * self.cell.0 + right / 2, CAPTION_PX + row * self.cell.1 + down / 2)
     }
 
     /// All that was drawn.
@@ -84,12 +90,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tiles_are_as_large_as_can_be_and_do_not_overlap() {
+    fn six_images_stand_in_two_rows_and_do_not_overlap() {
         let tiles = Tiles::new(&[16.0 / 9.0; 6], (1330, 856));
         assert_eq!(tiles.columns, 3);
         let (width, height) = tiles.size_px(16.0 / 9.0);
         assert!((430..440).contains(&width) && height == width * 9 / 16);
-        let corners: Vec<_> = (0..6).map(|place| tiles.corner(place, width)).collect();
+        let corners: Vec<_> = (0..6).map(|place| tiles.corner(place, (width, height))).collect();
         assert!(corners[1].0 >= corners[0].0 + width && corners[3].1 > corners[0].1 + height);
         assert!(corners.iter().all(|(x, y)| x + width <= 1330 && y + height <= 856));
     }
