@@ -1,15 +1,13 @@
 //! The page that `view` makes, opened in a browser without a network: it shows what the arrays say.
 
-mod support;
-
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
+use crate::outside::browser;
+use crate::support::{labelled_drive, manifest, occlabel, read_arrays, text};
 use serde_json::{Value, json};
-use support::{labelled_drive, manifest, occlabel, read_arrays, text};
 
-const WORLD: &str = include_str!("fixtures/mcap_world.toml");
+const WORLD: &str = include_str!("../fixtures/mcap_world.toml");
 
 /// A name that a log could hold.
 const HOSTILE: &str = "</script><script>hacked = 1</script><img src=x onerror='hacked = 1'>";
@@ -22,7 +20,7 @@ fn the_page_shows_what_the_arrays_say() {
     let (page, expected) = (folder.path().join("labels.html"), folder.path().join("expected.json"));
     occlabel(&["view", text(&labels), "--output", text(&page)]).exits(0);
     fs::write(&expected, expected_of(&labels, &manifest).to_string()).expect("written");
-    let Some(measured) = in_browser("page.mjs", &[&page, &expected]) else { return };
+    let Some(measured) = browser("page.mjs", &[&page, &expected]) else { return };
     println!("{measured}");
 }
 
@@ -33,7 +31,7 @@ fn the_page_offers_only_what_the_labels_hold() {
     let (bare, page) = (folder.path().join("bare"), folder.path().join("bare.html"));
     occlabel(&["convert", text(&labels), "--to", "surroundocc", "--output", text(&bare)]);
     occlabel(&["view", text(&bare), "--output", text(&page)]).exits(0);
-    in_browser("bare_page.mjs", &[&page]);
+    browser("bare_page.mjs", &[&page]);
 }
 
 #[test]
@@ -102,21 +100,4 @@ fn keyframe(labels: &Path, scene: &str, token: &str) -> Value {
         "crossings": evidence.crossings.values(),
         "flow": flow,
     })
-}
-
-/// Runs the browser; `None`, with a printed reason, if it is not installed.
-fn in_browser(script: &str, files: &[&Path]) -> Option<String> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/outside");
-    let needed = [folder.join("node_modules/playwright-core"), "/usr/bin/chromium".into()];
-    if let Some(absent) = needed.iter().find(|path| !path.exists()) {
-        let required = std::env::var("OCCLABEL_OUTSIDE").is_ok_and(|value| value == "required");
-        assert!(!required, "{} is not there: tests/outside/install", absent.display());
-        println!("skipped: {} is not there; tests/outside/install brings it", absent.display());
-        return None;
-    }
-    let output = Command::new("node").arg(folder.join(script)).args(files).output();
-    let output = output.expect("node starts");
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
-    Some(String::from_utf8_lossy(&output.stdout).into_owned())
 }

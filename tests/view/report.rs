@@ -1,20 +1,18 @@
 //! The page about a run: its numbers are those of the arrays, what strays comes first, nothing of a log
 //! becomes markup, and a browser shows it without a network.
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
+use crate::outside::browser;
+use crate::support::{labelled_drive, manifest, occlabel, read_arrays, report, text};
 use occlabel_labels::{LabelArrays, LabelTree, NumberArray, TreePath, npz};
 use serde_json::{Value, json};
-use support::{labelled_drive, manifest, occlabel, read_arrays, report, text};
 use tempfile::TempDir;
 
 /// Ten keyframes of a short drive.
-const WORLD: &str = include_str!("fixtures/mcap_world.toml");
+const WORLD: &str = include_str!("../fixtures/mcap_world.toml");
 
 /// What a log could try.
 const HOSTILE: &str = "</script><script>hacked = 1</script><img src=x onerror='hacked = 1'>";
@@ -189,20 +187,9 @@ fn make_hostile(reported: &Reported) -> String {
     scene
 }
 
-/// What a browser makes of a page; `None`, with a word, where there is none.
+/// What a browser says of the page; `None` if there is none.
 fn in_browser(page: &Path) -> Option<Value> {
-    let outside = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/outside");
-    let is_there = outside.join("node_modules/playwright-core").is_dir()
-        && Path::new("/usr/bin/chromium").exists();
-    if !is_there && std::env::var("OCCLABEL_OUTSIDE").as_deref() != Ok("required") {
-        println!("skipped: no browser; tests/outside/install installs it");
-        return None;
-    }
-    let ended = Command::new("node").arg(outside.join("report.mjs")).arg(page).output();
-    let ended = ended.expect("node starts");
-    let (told, wrong) =
-        [ended.stdout, ended.stderr].map(|b| String::from_utf8_lossy(&b).into_owned()).into();
-    assert!(ended.status.success(), "{wrong}");
+    let told = browser("report.mjs", &[page])?;
     Some(serde_json::from_str(&told).unwrap_or_else(|error| panic!("{error}: {told}")))
 }
 
