@@ -3,6 +3,7 @@
 mod meshes;
 mod outside;
 mod page;
+mod pictures;
 mod recordings;
 mod report;
 mod street;

@@ -25,28 +25,31 @@ pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, Stop> {
     }
     let outcome = step(&[&label[..], &["--evidence"]].concat(), console)?;
     step(&judge, console)?;
-    let shown = show(&args.output, &labels, console)?;
+    let shown = show(&args.output, &log, &labels, console)?;
     tell_next(&shown, Path::new(&labels), console)?;
     Ok(outcome)
 }
 
-/// Draws the keyframe in the middle of the drive, and writes the page about all of them: the files that
-/// were made.
-fn show(output: &Path, labels: &str, console: &Console) -> Result<Vec<PathBuf>, Stop> {
-    let pictures = output.join("pictures");
-    create_dir(&pictures)?;
-    let [above, behind, report] = [
-        pictures.join("birds_eye.png"),
-        pictures.join("perspective.png"),
-        output.join("report.html"),
+/// Shows the labels as pictures and pages: the files that were made.
+fn show(output: &Path, log: &str, labels: &str, console: &Console) -> Result<Vec<PathBuf>, Stop> {
+    create_dir(&output.join("pictures"))?;
+    let with_log = ["--format", "nuscenes", "--input", log];
+    let cubes = ["--picture", "perspective"];
+    let over_images = [&["--picture", "overlay"][..], &with_log].concat();
+    let shown: [(&str, &str, &[&str]); 5] = [
+        ("view", "pictures/sheet.png", &[]),
+        ("view", "pictures/perspective.png", &cubes),
+        ("view", "pictures/overlay.png", &over_images),
+        ("view", "labels.html", &[]),
+        ("report", "report.html", &[]),
     ];
-    let [to_above, to_behind, to_report] =
-        [&above, &behind, &report].map(|file| file.display().to_string());
-    let view = ["occlabel", "view", labels, "--picture"];
-    step(&[&view[..], &["birds-eye", "--output", &to_above]].concat(), console)?;
-    step(&[&view[..], &["perspective", "--output", &to_behind]].concat(), console)?;
-    step(&["occlabel", "report", labels, "--output", &to_report], console)?;
-    Ok(vec![above, behind, report])
+    let make = |(command, name, flags): (&str, &str, &[&str])| {
+        let file = output.join(name);
+        let to = file.display().to_string();
+        let line = [&["occlabel", command, labels, "--output", &to], flags].concat();
+        step(&line, console).map(|_| file)
+    };
+    shown.into_iter().map(make).collect()
 }
 
 /// Whether an earlier demo drove through the same world: then its labels are found done.
@@ -80,7 +83,8 @@ fn tell_next(shown: &[PathBuf], labels: &Path, console: &Console) -> Result<(), 
     console.result(&format!("Your log    occlabel check --format {formats} --input DIR"));
     console.result("            occlabel label --format FORMAT --input DIR --output LABELS");
     console.result("Its quality occlabel quality --held-out 5 --format FORMAT --input DIR");
-    console.result("            occlabel report LABELS --output report.html");
+    console.result("Its looks   occlabel view LABELS --output labels.html");
+    console.result("            occlabel view LABELS --output labels.mcap --format FORMAT --input DIR");
     Ok(())
 }
 
