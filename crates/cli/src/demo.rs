@@ -84,7 +84,9 @@ fn tell_next(shown: &[PathBuf], labels: &Path, console: &Console) -> Result<(), 
     console.result("            occlabel label --format FORMAT --input DIR --output LABELS");
     console.result("Its quality occlabel quality --held-out 5 --format FORMAT --input DIR");
     console.result("Its looks   occlabel view LABELS --output labels.html");
-    console.result("            occlabel view LABELS --output labels.mcap --format FORMAT --input DIR");
+    console.result(
+        "            occlabel view LABELS --output labels.mcap --format FORMAT --input DIR",
+    );
     Ok(())
 }
 

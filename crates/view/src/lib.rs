@@ -8,7 +8,7 @@
 //! Every way to show a scene takes a [`ShownScene`] and its [`ShownKeyframe`]s, whatever dialect they
 //! were read from. [`Recording`] lays a scene on a time line for Foxglove and Rerun; [`glb`],
 //! [`ply_cubes`] and [`ply_points`] are for programs that show solids. In pictures, what a voxel looks
-//! like is [`Painted`]'s affair; where it stands is that of [`Page`]'s methods, one a kind of picture.
+//! like is [`Painted`]'s affair; where it stands is that of [`Plate`]'s methods, one a kind of picture.
 //!
 //! ```
 //! use occlabel_core::{GridSpec, Palette, VoxelGrid};
@@ -46,7 +46,7 @@ mod testing;
 pub use mesh::{glb, ply_cubes, ply_points};
 pub use page::{PageKeyframe, page};
 pub use picture::{
-    Across, Aim, BirdsEye, CameraView, Change, ChangeCounts, Difference, Orbit, Page, Painted,
+    Across, Aim, BirdsEye, CameraView, Change, ChangeCounts, Difference, Orbit, Painted, Plate,
     Strip, birds_eye, perspective, png, thumbnail,
 };
 pub use recording::{EGO, GRID, Recording, ShownBox, WORLD};

@@ -6,7 +6,7 @@ use image::RgbImage;
 use occlabel_core::Fault;
 use occlabel_dialects::KeyframeKey;
 use occlabel_labels::write_file;
-use occlabel_view::{Across, Difference, Page, Painted, ShownScene, Strip, png};
+use occlabel_view::{Across, Difference, Painted, Plate, ShownScene, Strip, png};
 
 use crate::args::{LogArgs, PictureArg, ViewArgs};
 use crate::console::Console;
@@ -46,21 +46,21 @@ impl Subject<'_> {
         let (flags, keyframe) = (&self.args.picture, self.labels.read(key)?);
         let labels = Painted::of(&keyframe, self.scene);
         let title = self.title(key, self.told());
-        let page = self.page(&title);
+        let plate = self.plate(&title);
         if let Some(log) = self.args.log.as_ref().filter(|_| flags.needs_log()) {
-            return self.by_cameras(&page, &labels, key, log);
+            return self.by_cameras(&plate, &labels, key, log);
         }
         Ok(match flags.kind() {
-            PictureArg::BirdsEye => page.birds_eye(&labels),
-            PictureArg::Slices => page.slices(&labels, flags.across()),
-            PictureArg::Perspective => page.perspective(&labels, &flags.aim()),
-            _ => page.sheet(&labels, &flags.aim()),
+            PictureArg::BirdsEye => plate.birds_eye(&labels),
+            PictureArg::Slices => plate.slices(&labels, flags.across()),
+            PictureArg::Perspective => plate.perspective(&labels, &flags.aim()),
+            _ => plate.sheet(&labels, &flags.aim()),
         })
     }
 
     fn by_cameras(
         &self,
-        page: &Page,
+        plate: &Plate,
         labels: &Painted,
         key: &KeyframeKey,
         log: &LogArgs,
@@ -70,8 +70,8 @@ impl Subject<'_> {
         let shots = shots(&log, &key.token, args.picture.camera.as_deref())?;
         let views: Vec<_> = shots.iter().map(|shot| shot.view()).collect();
         Ok(match args.picture.kind() {
-            PictureArg::Perspective => page.through_camera(labels, &views[0]),
-            _ => page.overlay(labels, &views),
+            PictureArg::Perspective => plate.through_camera(labels, &views[0]),
+            _ => plate.overlay(labels, &views),
         })
     }
 
@@ -79,8 +79,8 @@ impl Subject<'_> {
         let [x_m, y_m, _] = self.extent_m();
         let what = format!("{} keyframes from above, up x {x_m}, left y {y_m} m", keys.len());
         let title = format!("{}: {what}", self.scene.name);
-        let (page, spec) = (self.page(&title), self.labels.set.spec());
-        let mut strip = Strip::new(page, &self.scene.palette, spec, keys.len());
+        let (plate, spec) = (self.plate(&title), self.labels.set.spec());
+        let mut strip = Strip::new(plate, &self.scene.palette, spec, keys.len());
         let mut first = None;
         for key in keys {
             let keyframe = self.labels.read(key)?;
@@ -110,12 +110,12 @@ impl Subject<'_> {
             Difference { from: Painted::of(&from, self.scene), to: Painted::of(&to, self.scene) };
         let what = format!("{} against {}", self.args.labels.display(), against.display());
         let title = self.title(key, what);
-        Ok(self.page(&title).difference(&sets, &args.aim()))
+        Ok(self.plate(&title).difference(&sets, &args.aim()))
     }
 
-    fn page<'a>(&self, title: &'a str) -> Page<'a> {
+    fn plate<'a>(&self, title: &'a str) -> Plate<'a> {
         let (width, height) = self.args.picture.size.unwrap_or(USUAL_PX);
-        Page { width, height, title }
+        Plate { width, height, title }
     }
 
     fn title(&self, key: &KeyframeKey, what: String) -> String {

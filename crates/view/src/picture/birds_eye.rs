@@ -18,8 +18,8 @@ use crate::picture::color::{FREE, PAPER, UNLABELLED, UNOBSERVED, lit};
 use crate::picture::column::{Column, columns};
 use crate::picture::legend::Legend;
 use crate::picture::marks;
-use crate::picture::page::{Page, blank};
 use crate::picture::painted::{Painted, hidden};
+use crate::picture::plate::{Plate, blank};
 
 pub(crate) const MARGIN_PX: u32 = 28;
 pub(crate) const FOOT_PX: u32 = 46;
@@ -56,8 +56,8 @@ pub fn birds_eye(labels: &Painted, view: &BirdsEye) -> RgbImage {
     picture
 }
 
-impl Page<'_> {
-    /// The same as large as the page allows.
+impl Plate<'_> {
+    /// The same as large as the plate allows.
     ///
     /// # Panics
     /// If the grids are not of the spec's shape.

@@ -8,9 +8,9 @@ use crate::picture::color::{FREE, UNOBSERVED, lit};
 use crate::picture::cubes::Cubes;
 use crate::picture::legend::Legend;
 use crate::picture::orbit::{Aim, Orbit};
-use crate::picture::page::{Page, blank};
 use crate::picture::painted::Painted;
 use crate::picture::perspective::mark_ego;
+use crate::picture::plate::{Plate, blank};
 use crate::picture::sheet::two;
 
 /// What became of a voxel from the first set to the second.
@@ -105,7 +105,7 @@ fn color_of(change: Change) -> Rgb<u8> {
     CHANGES[change as usize].2
 }
 
-impl Page<'_> {
+impl Plate<'_> {
     /// Where two sets differ, from above and as cubes, counted in the legend. From above a column
     /// shows its topmost change of occupancy or class; else what stands there; else a change of the masks.
     ///

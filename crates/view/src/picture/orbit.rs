@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 use occlabel_core::GridSpec;
 
 use crate::picture::lens::{Lens, TAN_HALF_VIEW};
-use crate::picture::page::body_width_px;
+use crate::picture::plate::body_width_px;
 
 /// A camera on a sphere around a target, in the grid frame.
 ///

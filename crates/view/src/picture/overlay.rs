@@ -6,8 +6,8 @@ use occlabel_core::{Camera, Pose};
 use crate::picture::color::{INK, PAPER, mix};
 use crate::picture::cubes::Cubes;
 use crate::picture::legend::Legend;
-use crate::picture::page::Page;
 use crate::picture::painted::Painted;
+use crate::picture::plate::Plate;
 use crate::picture::tiles::Tiles;
 
 /// How much of the labels' colour there is over an image, and where there is no image.
@@ -52,7 +52,7 @@ impl CameraView<'_> {
     }
 }
 
-impl Page<'_> {
+impl Plate<'_> {
     /// The labels over what cameras saw: one large, several as a sheet.
     ///
     /// # Panics

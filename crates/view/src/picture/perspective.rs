@@ -12,8 +12,8 @@ use crate::picture::lens::Lens;
 use crate::picture::marks;
 use crate::picture::orbit::{Aim, Orbit};
 use crate::picture::overlay::CameraView;
-use crate::picture::page::{Page, blank, body_width_px};
 use crate::picture::painted::{Painted, hidden};
+use crate::picture::plate::{Plate, blank, body_width_px};
 use crate::picture::tiles::fit;
 
 /// The occupied voxels as lit cubes, over a floor that shows where nothing stands.
@@ -23,12 +23,12 @@ use crate::picture::tiles::fit;
 /// # Panics
 /// If the grids are not of the spec's shape.
 pub fn perspective(labels: &Painted, orbit: &Orbit) -> RgbImage {
-    let page = Page { width: orbit.width, height: orbit.height, title: "" };
+    let plate = Plate { width: orbit.width, height: orbit.height, title: "" };
     let body = Orbit { width: body_width_px(orbit.width), ..*orbit };
-    page.around(&cubes(labels, &body), &legend(labels))
+    plate.around(&cubes(labels, &body), &legend(labels))
 }
 
-impl Page<'_> {
+impl Plate<'_> {
     /// The occupied voxels as lit cubes, from where `aim` says, over a floor that shows where nothing
     /// stands; voxels that no camera sees are dull.
     ///

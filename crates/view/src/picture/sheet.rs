@@ -5,11 +5,11 @@ use image::{RgbImage, imageops};
 use crate::picture::birds_eye::{legend, map, map_with_foot, mark_map};
 use crate::picture::column::columns;
 use crate::picture::orbit::Aim;
-use crate::picture::page::{Page, blank};
 use crate::picture::painted::Painted;
 use crate::picture::perspective::cubes;
+use crate::picture::plate::{Plate, blank};
 
-impl Page<'_> {
+impl Plate<'_> {
     /// The labels from above, and beside or under it as lit cubes.
     ///
     /// # Panics

@@ -7,8 +7,8 @@ use image::{Rgb, RgbImage};
 use crate::picture::birds_eye::cells;
 use crate::picture::color::{FREE, UNLABELLED, UNOBSERVED};
 use crate::picture::legend::Legend;
-use crate::picture::page::Page;
 use crate::picture::painted::{Painted, hidden};
+use crate::picture::plate::Plate;
 use crate::picture::tiles::Tiles;
 
 /// Across which axis cuts are made, and what lies up and to the left on them.
@@ -53,7 +53,7 @@ impl Across {
     }
 }
 
-impl Page<'_> {
+impl Plate<'_> {
     /// Every level of the grid, or cuts from front to back or left to right, with the state of each
     /// voxel.
     ///

@@ -6,13 +6,13 @@ use occlabel_core::{GridSpec, Palette};
 use crate::picture::birds_eye::{map, map_size, mark_ego, with_states};
 use crate::picture::column::{Column, columns};
 use crate::picture::legend::Legend;
-use crate::picture::page::Page;
 use crate::picture::painted::Painted;
+use crate::picture::plate::Plate;
 use crate::picture::tiles::Tiles;
 
 /// A sheet of keyframes from above, drawn one at a time, so that no two have to be held.
 pub struct Strip<'a> {
-    page: Page<'a>,
+    plate: Plate<'a>,
     palette: &'a Palette,
     tiles: Tiles,
     drawn: u32,
@@ -25,11 +25,11 @@ pub struct Strip<'a> {
 
 impl<'a> Strip<'a> {
     /// A strip for a number of keyframes of one palette, in grids like this.
-    pub fn new(page: Page<'a>, palette: &'a Palette, spec: &GridSpec, keyframes: usize) -> Self {
+    pub fn new(plate: Plate<'a>, palette: &'a Palette, spec: &GridSpec, keyframes: usize) -> Self {
         Self {
-            page,
+            plate,
             palette,
-            tiles: Tiles::new(&vec![aspect(spec); keyframes], page.body_px()),
+            tiles: Tiles::new(&vec![aspect(spec); keyframes], plate.body_px()),
             drawn: 0,
             present: [false; 256],
             states: Vec::new(),
@@ -71,7 +71,7 @@ impl<'a> Strip<'a> {
         let legend = Legend::default().with_classes(self.palette, &classes);
         let legend = with_states(legend, self.free_name, &self.states);
         let legend = if self.has_cameras { legend.with_hidden() } else { legend };
-        self.page.around(&self.tiles.into_picture(), &legend)
+        self.plate.around(&self.tiles.into_picture(), &legend)
     }
 }
 

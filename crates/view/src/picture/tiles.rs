@@ -5,7 +5,7 @@ use image::{RgbImage, imageops};
 use crate::picture::canvas::At;
 use crate::picture::color::FAINT_INK;
 use crate::picture::font::{fitting, write};
-use crate::picture::page::blank;
+use crate::picture::plate::blank;
 
 const CAPTION_PX: u32 = 24;
 const CAPTION_STEP_PX: f64 = 1.5;

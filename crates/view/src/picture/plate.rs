@@ -15,9 +15,9 @@ const LEFT_PX: u32 = 28;
 
 /// A picture's size and title. Each kind of picture is one of its methods, and fills it.
 ///
-/// Pages too low for a title have none, those too narrow for a legend neither.
+/// Plates too low for a title have none, those too narrow for a legend neither.
 #[derive(Clone, Copy, Debug)]
-pub struct Page<'a> {
+pub struct Plate<'a> {
     /// Columns of the picture, pixels.
     pub width: u32,
     /// Rows of the picture, pixels.
@@ -26,7 +26,7 @@ pub struct Page<'a> {
     pub title: &'a str,
 }
 
-impl Page<'_> {
+impl Plate<'_> {
     /// Width and height of what is shown, without title and legend.
     pub fn body_px(&self) -> (u32, u32) {
         (body_width_px(self.width), self.height - self.title_px())
@@ -77,10 +77,10 @@ mod tests {
 
     #[test]
     fn small_pages_give_all_their_room_to_the_body() {
-        let page = |width, height| Page { width, height, title: "a" };
-        assert_eq!(page(1600, 900).body_px(), (1330, 856));
-        assert_eq!(page(540, 900).body_px(), (540, 856));
-        assert_eq!(page(1600, 100).body_px(), (1330, 100));
-        assert_eq!(Page { width: 0, height: 0, title: "" }.body_px(), (0, 0));
+        let plate = |width, height| Plate { width, height, title: "a" };
+        assert_eq!(plate(1600, 900).body_px(), (1330, 856));
+        assert_eq!(plate(540, 900).body_px(), (540, 856));
+        assert_eq!(plate(1600, 100).body_px(), (1330, 100));
+        assert_eq!(Plate { width: 0, height: 0, title: "" }.body_px(), (0, 0));
     }
 }

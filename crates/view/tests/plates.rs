@@ -1,11 +1,11 @@
-//! Pages of small known labels: what is at which pixel, told by other means.
+//! Plates of small known labels: what is at which pixel, told by other means.
 
 use image::{Rgb, RgbImage};
 use nalgebra::{Isometry3, Point2, Point3, Quaternion, UnitQuaternion, Vector3};
 use occlabel_core::camera::{BodyMask, CameraModel, Intrinsics, KannalaBrandt, Ocam, Pinhole};
 use occlabel_core::{Camera, GridSpec, Palette, VoxelGrid, VoxelIndex};
 use occlabel_view::{
-    Across, Aim, CameraView, Change, Difference, NO_LABEL, Page, Painted, Strip, png,
+    Across, Aim, CameraView, Change, Difference, NO_LABEL, Painted, Plate, Strip, png,
 };
 
 const FREE: u8 = 17;
@@ -223,27 +223,27 @@ fn masks_that_one_set_lacks_do_not_differ() {
     assert_eq!(counts, Default::default());
 }
 
-/// Draws every kind of page.
-fn all(labels: &Labels, page: &Page) -> Vec<RgbImage> {
+/// Draws every kind of plate.
+fn all(labels: &Labels, plate: &Plate) -> Vec<RgbImage> {
     let painted = labels.painted();
     let cameras = cameras();
     let views: Vec<_> = cameras.iter().map(|camera| view(camera, None)).collect();
-    let mut strip = Strip::new(*page, &labels.palette, &labels.spec, 3);
+    let mut strip = Strip::new(*plate, &labels.palette, &labels.spec, 3);
     (0..3).for_each(|keyframe| strip.add(&painted, &format!("keyframe {keyframe}")));
     let other = Labels::random(labels.spec.shape(), 99);
     let sets = Difference { from: painted, to: other.painted() };
     let axes = [Across::X, Across::Y, Across::Z];
-    let mut pages = axes.map(|across| page.slices(&painted, across)).to_vec();
-    pages.extend([
-        page.sheet(&painted, &Aim::default()),
-        page.birds_eye(&painted),
-        page.perspective(&painted, &Aim { distance_m: Some(9.0), ..Aim::default() }),
-        page.through_camera(&painted, &views[2]),
-        page.overlay(&painted, &views),
-        page.difference(&sets, &Aim::default()),
+    let mut plates = axes.map(|across| plate.slices(&painted, across)).to_vec();
+    plates.extend([
+        plate.sheet(&painted, &Aim::default()),
+        plate.birds_eye(&painted),
+        plate.perspective(&painted, &Aim { distance_m: Some(9.0), ..Aim::default() }),
+        plate.through_camera(&painted, &views[2]),
+        plate.overlay(&painted, &views),
+        plate.difference(&sets, &Aim::default()),
         strip.finish(),
     ]);
-    pages
+    plates
 }
 
 #[test]
@@ -256,8 +256,8 @@ fn every_page_has_the_size_that_was_asked_for() {
         ([40, 3, 70], (200, 700)),
         ([14, 12, 6], (900, 500)),
     ] {
-        let page = Page { width, height, title: "a title that is far too long for its page" };
-        for picture in all(&Labels::random(shape, 7), &page) {
+        let plate = Plate { width, height, title: "a title that is far too long for its plate" };
+        for picture in all(&Labels::random(shape, 7), &plate) {
             assert_eq!(picture.dimensions(), (width, height));
             drawn += 1;
         }
@@ -270,13 +270,13 @@ fn pages_are_the_same_on_any_number_of_threads() {
     let labels = Labels::random([14, 12, 6], 3);
     let draw = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let page = Page { width: 700, height: 400, title: "threads" };
-        pool.install(|| all(&labels, &page).iter().map(png).collect::<Vec<_>>())
+        let plate = Plate { width: 700, height: 400, title: "threads" };
+        pool.install(|| all(&labels, &plate).iter().map(png).collect::<Vec<_>>())
     };
     assert_eq!(draw(1), draw(2));
 }
 
-/// The share of a page's body, legend left out, that has a colour.
+/// The share of a plate's body, legend left out, that has a colour.
 fn share(picture: &RgbImage, color: [u8; 3]) -> f64 {
     let same = picture.pixels().filter(|pixel| pixel.0 == color).count();
     same as f64 / f64::from(picture.width() * picture.height())
@@ -289,8 +289,8 @@ fn slices_show_every_state_apart() {
         *value = [0, FREE, FREE, NO_LABEL][at / 16];
     }
     labels.mask_lidar.values_mut()[32..48].fill(0);
-    let page = Page { width: 300, height: 300, title: "" };
-    let picture = page.slices(&labels.painted(), Across::Z);
+    let plate = Plate { width: 300, height: 300, title: "" };
+    let picture = plate.slices(&labels.painted(), Across::Z);
     let (car, free, unobserved, unlabelled) =
         (labels.palette.color(0), [88, 97, 112], [40, 45, 54], [74, 62, 44]);
     let shares = [car, free, unobserved, unlabelled].map(|color| share(&picture, color));
@@ -311,7 +311,8 @@ fn upright_slices_have_up_above_and_left_left() {
         labels.mask_camera = VoxelGrid::filled(&spec, 1);
         labels.spec = spec;
         (0..2).for_each(|i| labels.put(if across == Across::X { [i, 1, 1] } else { [1, i, 1] }, 0));
-        let picture = Page { width: 400, height: 200, title: "" }.slices(&labels.painted(), across);
+        let picture =
+            Plate { width: 400, height: 200, title: "" }.slices(&labels.painted(), across);
         let color = |class| labels.palette.color(class);
         let mut of_first = picture.enumerate_pixels().filter(|(x, ..)| *x < 200);
         let inked = of_first.find(|(.., p)| [color(0), color(1)].contains(&p.0)).unwrap();
