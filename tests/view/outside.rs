@@ -15,7 +15,7 @@ fn folder() -> PathBuf {
 /// reason, if that is not installed.
 pub(crate) fn python(script: &str, args: &[&str]) -> Option<Value> {
     let python = folder().join("python/bin/python");
-    let printed = run(&python, &[python.clone()], script, args)?;
+    let printed = run(&python, std::slice::from_ref(&python), script, args)?;
     Some(serde_json::from_str(&printed).expect("a line of JSON"))
 }
 

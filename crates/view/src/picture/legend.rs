@@ -4,7 +4,7 @@ use image::{Rgb, RgbImage};
 use occlabel_core::Palette;
 
 use crate::picture::canvas::{At, polygon};
-use crate::picture::color::INK;
+use crate::picture::color::{FAINT_INK, INK, mix};
 use crate::picture::font::{CAPITAL_ROWS, width_px, write};
 use crate::picture::painted::{Painted, hidden};
 
@@ -72,11 +72,13 @@ impl Legend {
     }
 }
 
-/// A square with round corners, its left side's middle at a place.
+/// A square with round corners and a rim that tells it from the ground, its left side's middle at a place.
 fn swatch(picture: &mut RgbImage, left: At, color: Rgb<u8>) {
     const ROUND_PX: f64 = 3.0;
     let (near, far, half) = (left.x + ROUND_PX, left.x + SWATCH_PX - ROUND_PX, SWATCH_PX / 2.0);
     let (top, bottom) = (left.y - half + ROUND_PX, left.y + half - ROUND_PX);
     let corners = [(near, top), (far, top), (far, bottom), (near, bottom)];
-    polygon(picture, &corners.map(|(x, y)| At::new(x, y)), ROUND_PX, color);
+    let corners = corners.map(|(x, y)| At::new(x, y));
+    polygon(picture, &corners, ROUND_PX, mix(color, FAINT_INK, 0.5));
+    polygon(picture, &corners, ROUND_PX - 1.0, color);
 }
