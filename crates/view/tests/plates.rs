@@ -44,7 +44,7 @@ impl Labels {
             state ^= state << 13;
             state ^= state >> 7;
             state ^= state << 17;
-            if state % 14 == 0 {
+            if state.is_multiple_of(14) {
                 *value = (state / 14 % 3) as u8;
             }
         }
