@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::support::{Ended, Label, occlabel, text};
+use crate::street::street;
+use crate::support::{Ended, Label, copy, manifest, occlabel, text};
 
 /// A street of few rays, its log with images, and its labels.
 struct Street {
@@ -122,4 +123,45 @@ fn a_broken_image_is_told_by_its_file() {
     let flags = ["--picture", "overlay", "--format", "nuscenes", "--input", text(&log)];
     let told = street.view(&street.path("none.png"), &flags).exits(1).stderr;
     assert!(told.contains("CAM_FRONT") && told.contains("expected a JPEG or PNG"), "{told}");
+}
+
+#[test]
+fn labels_without_keyframes_are_refused_by_every_output() {
+    let street = street();
+    let bare = street.beside("no-keyframes");
+    copy(&street.labels, &bare);
+    let mut manifest = manifest(&bare);
+    manifest["scenes"]["street"]["keyframes"] = serde_json::json!([]);
+    fs::write(bare.join("manifest.json"), manifest.to_string()).expect("written");
+    for name in ["bare.png", "bare.html", "bare.mcap", "bare.ply", "bare.glb"] {
+        let output = street.beside(name);
+        occlabel(&["view", text(&bare), "--output", text(&output)]).exits(2).tells(&["none"]);
+        assert!(!output.exists(), "{name}");
+    }
+    let file = bare.join("manifest.json");
+    let line = ["view", text(&file), "--output", "a.png"];
+    occlabel(&line).exits(2).tells(&["a folder of labels", "hint"]);
+}
+
+#[test]
+fn a_grid_in_the_frame_of_a_turned_lidar_is_seen_from_behind_the_ego() {
+    let street = street();
+    let turned = street.beside("turned");
+    copy(&street.labels, &turned);
+    let mut manifest = manifest(&turned);
+    manifest["grid"]["frame"] = "lidar".into();
+    let poses = manifest["scenes"]["street"]["poses"].as_array_mut().expect("poses");
+    // The lidar's x looks to the right: the ego's forward is its y.
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    poses.iter_mut().for_each(|pose| {
+        pose["ego_from_lidar"]["rotation"] = serde_json::json!([half, 0.0, 0.0, -half])
+    });
+    fs::write(turned.join("manifest.json"), manifest.to_string()).expect("written");
+    let page = street.beside("turned.html");
+    occlabel(&["view", text(&turned), "--output", text(&page)]).exits(0);
+    let html = fs::read_to_string(page).expect("a page");
+    let (_, rest) = html.split_once("\"heading_rad\":").expect("a heading");
+    let heading_rad: f64 =
+        rest.split(&[',', '}'][..]).next().and_then(|n| n.parse().ok()).expect("a number");
+    assert!((heading_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{heading_rad}");
 }

@@ -33,9 +33,13 @@ impl Reported {
 
     /// The page, in its file.
     fn page(&self, more: &[&str]) -> PathBuf {
+        self.page_that_exits(0, more)
+    }
+
+    fn page_that_exits(&self, code: i32, more: &[&str]) -> PathBuf {
         let page = self.folder.path().join("report.html");
         let line = ["report", text(&self.labels), "--output", text(&page)];
-        occlabel(&[&line[..], more].concat()).exits(0);
+        occlabel(&[&line[..], more].concat()).exits(code);
         page
     }
 
@@ -134,7 +138,7 @@ fn what_strays_is_first_and_what_cannot_be_read_is_told() {
     reported.change(&tokens[4], |classes| classes.fill(17));
     let place = TreePath::labels("street", &tokens[7]).expect("a path");
     fs::write(LabelTree::new(&reported.labels).place(&place), "no npz").expect("written");
-    let page = fs::read_to_string(reported.page(&[])).expect("a page");
+    let page = fs::read_to_string(reported.page_that_exits(3, &[])).expect("a page");
     let (_, first) = page.split_once("class=\"cards\"").expect("cards");
     let (first, _) = first.split_once("</li>").expect("a card");
     assert!(first.contains(&tokens[4]) && first.contains("Occupied: 0\u{a0}%"), "{first}");

@@ -79,21 +79,25 @@ export class Controls {
     }
 }
 
-/** Places to look from, for a grid: a name each, where one stands, and where one looks at. */
-export function presetsOf({ min_m, size_m, shape }) {
+/** Places to look from, for a keyframe's grid: a name each, where one stands, and where one looks at. */
+export function presetsOf({ min_m, size_m, shape, heading_rad }) {
+    const [cos, sin] = [Math.cos(heading_rad ?? 0), Math.sin(heading_rad ?? 0)];
     const span = shape.map((n, axis) => n * size_m[axis]);
     const [x, y] = [0, 1].map((axis) => min_m[axis] + span[axis] / 2);
-    const [long, wide] = [span[0], span[1]];
+    const [turned, along] = [Math.abs(sin), Math.abs(cos)];
+    const [long, wide] = [span[0] * along + span[1] * turned, span[1] * along + span[0] * turned];
     const reach = Math.max(long, wide);
     const ground = Math.min(Math.max(0, min_m[2]), min_m[2] + span[2]);
-    const centre = [x, y, ground];
+    const from = ([x, y]) => (ahead, left, up) => [x + ahead * cos - left * sin, y + ahead * sin + left * cos, up];
+    const [centre, ego] = [from([x, y]), from([0, 0])];
+    const middle = centre(0, 0, ground);
     return {
-        corner: [[x - 0.95 * long, y - 0.72 * wide, ground + 0.8 * reach], centre],
-        top: [[x - 0.001, y, ground + 1.5 * reach], centre],
-        behind: [[x - 0.8 * long, y, ground + 0.36 * reach], [x + 0.05 * long, y, ground]],
-        left: [[x, y + 1.1 * wide, ground + 0.4 * reach], centre],
-        right: [[x, y - 1.1 * wide, ground + 0.4 * reach], centre],
-        front: [[x + 1.2 * long, y, ground + 0.45 * reach], centre],
-        ego: [[-9, 0, 5.5], [12, 0, 0]],
+        corner: [centre(-1.1 * long, -0.85 * wide, ground + 0.9 * reach), middle],
+        top: [centre(-0.001, 0, ground + 1.5 * reach), middle],
+        behind: [centre(-0.8 * long, 0, ground + 0.36 * reach), centre(0.05 * long, 0, ground)],
+        left: [centre(0, 1.1 * wide, ground + 0.4 * reach), middle],
+        right: [centre(0, -1.1 * wide, ground + 0.4 * reach), middle],
+        front: [centre(1.2 * long, 0, ground + 0.45 * reach), middle],
+        ego: [ego(-9, 0, 5.5), ego(12, 0, 0)],
     };
 }

@@ -29,12 +29,15 @@ export class Labels {
     }
 }
 
+/** Whether the ego's forward is so near to x that x may be called so. */
+const isAhead = ({ heading_rad }) => heading_rad !== null && Math.abs(heading_rad) < 0.1;
+
 /** Forward and left from the ego, and each 20 m at the near sides of the floor. */
 function wordsOf(grid) {
     const [low, high] = [grid.min_m, maxOf(grid)];
     const words = [
-        { text: "x forward", at: [high[0] + 2, 0, low[2]] },
-        { text: "y left", at: [0, high[1] + 2, low[2]] },
+        { text: isAhead(grid) ? "x forward" : "x", at: [high[0] + 2, 0, low[2]] },
+        { text: isAhead(grid) ? "y left" : "y", at: [0, high[1] + 2, low[2]] },
     ];
     for (const axis of [0, 1]) {
         for (let metres = Math.ceil(low[axis] / WORD_STEP_M) * WORD_STEP_M; metres <= high[axis]; metres += WORD_STEP_M) {

@@ -154,6 +154,7 @@ export class Panel {
             $("slice-m").textContent = `${"xyz"[axis]} ${(min_m[axis] + (at + 0.5) * size_m[axis]).toFixed(2)} m`;
         }
         $("free-name").textContent = keyframe.emptyName();
+        $("unobserved-name").textContent = keyframe.has("mask_lidar") ? "unobserved" : "no label";
         $("unobserved-row").hidden = counts.unobserved === 0 && !keyframe.has("mask_lidar");
         for (const state of ["free", "unobserved"]) $(`${state}-count`).textContent = number(counts[state]);
     }

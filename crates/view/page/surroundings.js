@@ -12,10 +12,11 @@ const STEP_M = 10;
 /** Lines around the grid of a keyframe, as an object of the scene. */
 export class Surroundings extends THREE.Group {
     show(keyframe) {
-        const same = JSON.stringify([keyframe.min_m, keyframe.size_m, keyframe.shape]);
+        const same = JSON.stringify([keyframe.min_m, keyframe.size_m, keyframe.shape, keyframe.heading_rad]);
         if (this.drawn !== same) {
             this.clear();
-            this.add(floor(keyframe), outline(keyframe), ...axes(), egoMark());
+            this.add(floor(keyframe), outline(keyframe), ...axes());
+            if (keyframe.heading_rad !== null) this.add(egoMark(keyframe.heading_rad));
             this.drawn = same;
         }
         this.drawWay(keyframe);
@@ -67,12 +68,13 @@ function axes() {
 }
 
 /** An arrowhead that points forward, drawn over all. */
-function egoMark() {
+function egoMark(heading_rad) {
     const shape = [[2.6, 0, 0], [-1.4, 1.5, 0], [-0.6, 0, 0], [2.6, 0, 0], [-0.6, 0, 0], [-1.4, -1.5, 0]];
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(shape.flat()), 3));
     const look = { color: INK, side: THREE.DoubleSide, transparent: true, opacity: 0.85, depthTest: false };
     const mark = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(look));
+    mark.rotation.z = heading_rad;
     mark.renderOrder = 1;
     return mark;
 }

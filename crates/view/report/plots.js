@@ -25,6 +25,7 @@
       data: { labels: names, datasets: [{ data: values, backgroundColor: colors, borderColor: "#00000040", borderWidth: 1 }] },
       options: {
         indexAxis: "y",
+        layout: { padding: { right: 24 } },
         plugins: { tooltip: { callbacks: { label: (item) => options.told(item.raw) } } },
         scales: {
           x: { type: options.scale, min: options.min, title: { display: true, text: options.unit }, ticks: options.ticks, grid: options.grid },
@@ -90,6 +91,9 @@
       },
     });
   }
+
+  // On paper nothing can be opened.
+  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((one) => { one.open = true; }));
 
   classes();
   stages();

@@ -26,6 +26,7 @@
 //!     mask_camera: Some(&seen),
 //!     free: 17,
 //!     palette: &palette,
+//!     heading_rad: Some(0.0),
 //! };
 //! let above = birds_eye(&labels, &BirdsEye { map_px: 200 });
 //! let behind = perspective(&labels, &Orbit::behind(&spec, 320, 180));

@@ -49,6 +49,9 @@ pub struct ShownKeyframe {
     pub time: Option<Timestamp>,
     /// Where its grid stands, if the labels' manifest tells.
     pub world_from_grid: Option<Pose>,
+    /// Where the ego's forward points in the grid frame, from x towards y: 0 in the ego's own frame; if
+    /// anybody tells.
+    pub heading_rad: Option<f64>,
     /// The grid.
     pub spec: GridSpec,
     /// The index of the class where occupied, [`ShownScene::free`] where nothing stands, or

@@ -22,6 +22,7 @@ pub(crate) fn shown_keyframe(spec: &GridSpec, semantics: VoxelGrid<u8>) -> Shown
         token: "first".into(),
         time: None,
         world_from_grid: None,
+        heading_rad: Some(0.0),
         spec: spec.clone(),
         semantics,
         mask_lidar: None,

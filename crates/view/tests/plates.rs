@@ -64,6 +64,7 @@ impl Labels {
             mask_camera: Some(&self.mask_camera),
             free: FREE,
             palette: &self.palette,
+            heading_rad: Some(0.0),
         }
     }
 
@@ -292,7 +293,7 @@ fn slices_show_every_state_apart() {
     let plate = Plate { width: 300, height: 300, title: "" };
     let picture = plate.slices(&labels.painted(), Across::Z);
     let (car, free, unobserved, unlabelled) =
-        (labels.palette.color(0), [88, 97, 112], [40, 45, 54], [74, 62, 44]);
+        (labels.palette.color(0), [88, 97, 112], [14, 16, 20], [74, 62, 44]);
     let shares = [car, free, unobserved, unlabelled].map(|color| share(&picture, color));
     assert!(shares.iter().all(|share| (share - shares[0]).abs() < 0.01), "{shares:?}");
     assert!(shares[0] > 0.15, "{shares:?}");
@@ -320,4 +321,24 @@ fn upright_slices_have_up_above_and_left_left() {
         let lower = picture.get_pixel(inked.0 + 2, inked.1 + 120);
         assert_eq!(lower.0, color(1), "{across:?}: under it");
     }
+}
+
+/// Where on the map's ring of 10 pixels around the ego its mark reaches: above, left, below, right.
+fn reached(labels: &Labels, heading_rad: Option<f64>) -> [bool; 4] {
+    let painted = Painted { heading_rad, ..labels.painted() };
+    let picture = occlabel_view::birds_eye(&painted, &occlabel_view::BirdsEye { map_px: 240 });
+    let (ego_x, ego_y) = (28 + 120, 28 + 120);
+    let is_ink = |x: i32, y: i32| picture.get_pixel(x as u32, y as u32).0 == [232, 236, 242];
+    [(0, -10), (-10, 0), (0, 10), (10, 0)].map(|(dx, dy)| is_ink(ego_x + dx, ego_y + dy))
+}
+
+#[test]
+fn the_ego_points_where_it_drives_and_nowhere_if_nobody_tells() {
+    let mut labels = Labels::empty([24, 24, 2]);
+    labels.spec = GridSpec::new([-12.0, -12.0, 0.0], [12.0, 12.0, 2.0], [1.0; 3]).unwrap();
+    assert_eq!(reached(&labels, Some(0.0)), [true, false, false, false], "along x: up");
+    let quarter = std::f64::consts::FRAC_PI_2;
+    assert_eq!(reached(&labels, Some(quarter)), [false, true, false, false], "along y: left");
+    assert_eq!(reached(&labels, Some(-quarter)), [false, false, false, true]);
+    assert_eq!(reached(&labels, None), [false; 4]);
 }

@@ -72,6 +72,7 @@ fn draw(labels: &ShownSet, run: &Run, at: KeyframeAt) -> Result<Thumbnail, Fault
         mask_camera: read.mask_camera.as_ref(),
         free: scene.free,
         palette: &scene.palette,
+        heading_rad: None,
     };
     Ok(Thumbnail { at, png: png(&thumbnail(&painted)) })
 }

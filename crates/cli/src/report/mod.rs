@@ -31,7 +31,8 @@ pub(crate) fn run(args: &ReportArgs, console: &Console) -> Result<Outcome, Stop>
     let thumbnails = keyframes::thumbnails(&labels, &run)?;
     write_file(&args.output, report_page(&run, &thumbnails).as_bytes())?;
     console.result(&args.output.display().to_string());
-    Ok(Outcome::Complete)
+    let is_whole = run.scenes.iter().all(|scene| scene.unreadable.is_empty());
+    Ok(if is_whole { Outcome::Complete } else { Outcome::Degraded })
 }
 
 fn check_ending(output: &Path) -> Result<(), Fault> {

@@ -1,6 +1,5 @@
 //! A keyframe's occupied voxels as a PLY or GLB file.
 
-use occlabel_core::Fault;
 use occlabel_labels::write_file;
 use occlabel_view::{ShownKeyframe, ShownScene, glb, ply_cubes, ply_points};
 
@@ -28,13 +27,8 @@ fn make(
     console: &Console,
     bytes: fn(&ShownKeyframe, &ShownScene) -> Vec<u8>,
 ) -> Result<(), Stop> {
-    if args.keyframes.len() > 1 {
-        let found = format!("{} of them", args.keyframes.len());
-        return Err(Stop::usage(Fault::new("keyframes", "--keyframes", "one keyframe", found)));
-    }
     let scene = labels.scene(args.scene.as_deref()).map_err(Stop::usage)?;
-    let keys = labels.keyframes(&scene.name, &args.keyframes).map_err(Stop::usage)?;
-    let Some(key) = keys.get(keys.len() / 2) else { return Ok(()) };
+    let key = labels.keyframe(&scene.name, &args.keyframes).map_err(Stop::usage)?;
     console.info(&format!("{}: keyframe {}", scene.name, key.token));
-    Ok(write_file(&args.output, &bytes(&labels.read(key)?, &scene))?)
+    Ok(write_file(&args.output, &bytes(&labels.read(&key)?, &scene))?)
 }

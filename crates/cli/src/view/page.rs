@@ -31,7 +31,8 @@ fn told(scene: &str, keyframes: &[PageKeyframe], bytes: usize) -> String {
         false => "",
     };
     let megabytes = bytes as f64 / 1e6;
-    format!("{scene}: {} keyframes, {megabytes:.1} MB{hint}", keyframes.len())
+    let (count, ending) = (keyframes.len(), if keyframes.len() == 1 { "" } else { "s" });
+    format!("{scene}: {count} keyframe{ending}, {megabytes:.1} MB{hint}")
 }
 
 /// Who made the labels, and how, as far as the files tell.

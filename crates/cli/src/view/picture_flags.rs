@@ -17,7 +17,10 @@ impl PictureArgs {
         let kind = self.kind();
         let takes = |flag: &str| taken(kind).contains(&flag);
         if let Some(flag) = self.set_flags().into_iter().find(|flag| !takes(flag)) {
-            let expected = format!("flags of this picture ({})", taken(kind).join(", "));
+            let expected = match taken(kind).join(", ") {
+                none if none.is_empty() => "no flags but --size".to_owned(),
+                some => format!("flags of this picture ({some})"),
+            };
             return Err(fault(kind, expected, flag));
         }
         let is_of_orbit = |flag: &&str| ORBIT.contains(flag);

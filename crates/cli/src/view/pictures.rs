@@ -22,15 +22,15 @@ const USUAL_PX: (u32, u32) = (1600, 900);
 pub(crate) fn make(args: &ViewArgs, labels: &ShownSet, console: &Console) -> Result<(), Stop> {
     args.picture.check(args.log.is_some()).map_err(Stop::usage)?;
     let scene = labels.scene(args.scene.as_deref()).map_err(Stop::usage)?;
-    let keys = labels.keyframes(&scene.name, &args.keyframes).map_err(Stop::usage)?;
-    let Some(key) = keys.get(keys.len() / 2) else { return Ok(()) };
     let subject = Subject { args, labels, scene: &scene };
-    let picture = match &args.picture.against {
-        Some(against) => subject.difference(key, against)?,
-        None if args.picture.kind() == PictureArg::Strip => subject.strip(&keys)?,
-        None => subject.of_keyframe(key)?,
+    let (picture, shown) = if args.picture.kind() == PictureArg::Strip {
+        let keys = labels.keyframes(&scene.name, &args.keyframes).map_err(Stop::usage)?;
+        (subject.strip(&keys)?, format!("{} keyframes", keys.len()))
+    } else {
+        let key = labels.keyframe(&scene.name, &args.keyframes).map_err(Stop::usage)?;
+        (subject.of_keyframe(&key)?, format!("keyframe {}", key.token))
     };
-    console.info(&format!("{}: keyframe {}", scene.name, key.token));
+    console.info(&format!("{}: {shown}", scene.name));
     Ok(write_file(&args.output, &png(&picture))?)
 }
 
@@ -43,6 +43,13 @@ struct Subject<'a> {
 
 impl Subject<'_> {
     fn of_keyframe(&self, key: &KeyframeKey) -> Result<RgbImage, Stop> {
+        match &self.args.picture.against {
+            Some(against) => self.difference(key, against),
+            None => self.of_one_set(key),
+        }
+    }
+
+    fn of_one_set(&self, key: &KeyframeKey) -> Result<RgbImage, Stop> {
         let (flags, keyframe) = (&self.args.picture, self.labels.read(key)?);
         let labels = Painted::of(&keyframe, self.scene);
         let title = self.title(key, self.told());
@@ -101,14 +108,14 @@ impl Subject<'_> {
         let pair = pairs.both.iter().find(|(one, _)| one == key);
         let other = pair.map(|(_, other)| other).ok_or_else(|| {
             let place = against.display().to_string();
-            let found = format!("no `{}`", key.token);
-            Stop::usage(Fault::new("keyframe", place, "the keyframes of the labels", found))
+            let expected = format!("the keyframe of {}", self.args.labels.display());
+            Stop::usage(Fault::new("keyframe", place, expected, format!("no `{}`", key.token)))
         })?;
         let others = ShownSet::open(against, dialect).map_err(Stop::usage)?;
         let (from, to) = (self.labels.read(key)?, others.read(other)?);
         let sets =
             Difference { from: Painted::of(&from, self.scene), to: Painted::of(&to, self.scene) };
-        let what = format!("{} against {}", self.args.labels.display(), against.display());
+        let what = format!("A = {}, B = {}", self.args.labels.display(), against.display());
         let title = self.title(key, what);
         Ok(self.plate(&title).difference(&sets, &args.aim()))
     }

@@ -32,6 +32,7 @@ pub(crate) struct About {
     time_ns: Option<String>,
     /// x, y, z, and a quaternion x, y, z, w.
     world_from_grid: Option<[f64; 7]>,
+    heading_rad: Option<f64>,
     min_m: [f64; 3],
     size_m: [f64; 3],
     shape: [usize; 3],
@@ -72,6 +73,7 @@ impl About {
             token: keyframe.token.clone(),
             time_ns: keyframe.time.map(|time| time.0.to_string()),
             world_from_grid: pose,
+            heading_rad: keyframe.heading_rad,
             min_m: spec.min_m().into(),
             size_m: spec.size_m().into(),
             shape: spec.shape(),

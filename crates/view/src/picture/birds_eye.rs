@@ -52,7 +52,7 @@ pub fn birds_eye(labels: &Painted, view: &BirdsEye) -> RgbImage {
     let mut picture = RgbImage::from_pixel(width as u32, height, PAPER);
     imageops::replace(&mut picture, &map, MARGIN_PX.into(), MARGIN_PX.into());
     legend.draw(&mut picture, At::new(legend_left, f64::from(MARGIN_PX)));
-    mark_foot(&mut picture, labels.spec, (MARGIN_PX, MARGIN_PX), map.dimensions());
+    mark_foot(&mut picture, labels, (MARGIN_PX, MARGIN_PX), map.dimensions());
     picture
 }
 
@@ -65,24 +65,24 @@ impl Plate<'_> {
         labels.check();
         let columns = columns(labels);
         let draw = |size| marked_map(labels, &columns, size);
-        let body = map_with_foot(labels.spec, self.body_px(), draw);
+        let body = map_with_foot(labels, self.body_px(), draw);
         self.around(&body, &legend(labels, &columns))
     }
 }
 
 /// A map, drawn by its size, in the middle of a room, with the scale bar and the axes under it.
 pub(crate) fn map_with_foot(
-    spec: &GridSpec,
+    labels: &Painted,
     (width, height): (u32, u32),
     draw: impl FnOnce((u32, u32)) -> RgbImage,
 ) -> RgbImage {
     let room = (width.saturating_sub(2 * MARGIN_PX), height.saturating_sub(FOOT_PX + 6));
-    let map = draw(map_size(spec, room));
+    let map = draw(map_size(labels.spec, room));
     let mut body = blank(width, height);
     let left = (width - map.width().min(width)) / 2;
     let top = height.saturating_sub(map.height() + FOOT_PX) / 2;
     imageops::replace(&mut body, &map, left.into(), top.into());
-    mark_foot(&mut body, spec, (left, top), map.dimensions());
+    mark_foot(&mut body, labels, (left, top), map.dimensions());
     body
 }
 
@@ -110,7 +110,7 @@ pub(crate) fn with_states(mut legend: Legend, free: &str, columns: &[Column]) ->
 /// The map with rings and the ego on it.
 fn marked_map(labels: &Painted, columns: &[Column], size: (u32, u32)) -> RgbImage {
     let mut map = map(labels, columns, size);
-    mark_map(&mut map, labels.spec);
+    mark_map(&mut map, labels);
     map
 }
 
@@ -182,7 +182,8 @@ fn scale_px_per_m(width: u32, spec: &GridSpec) -> f64 {
 }
 
 /// Rings around the ego, and the ego.
-pub(crate) fn mark_map(map: &mut RgbImage, spec: &GridSpec) {
+pub(crate) fn mark_map(map: &mut RgbImage, labels: &Painted) {
+    let spec = labels.spec;
     let (scale, max_m) = (scale_px_per_m(map.width(), spec), spec.max_m());
     let ego = At::new(max_m.y, max_m.x) * scale;
     let longest_m = f64::from(map.width().max(map.height())) / scale;
@@ -191,29 +192,34 @@ pub(crate) fn mark_map(map: &mut RgbImage, spec: &GridSpec) {
     for radius_m in radii_m.take_while(|radius_m| *radius_m < longest_m / 2.0) {
         marks::ring(map, ego, radius_m * scale, radius_m);
     }
-    mark_ego(map, spec, 1.0);
+    mark_ego(map, labels, 1.0);
 }
 
-/// The ego on a map, at a share of its usual size.
-pub(crate) fn mark_ego(map: &mut RgbImage, spec: &GridSpec, share: f64) {
+/// The ego on a map, at a share of its usual size; nothing if nobody tells where it points.
+pub(crate) fn mark_ego(map: &mut RgbImage, labels: &Painted, share: f64) {
+    let (Some(heading_rad), spec) = (labels.heading_rad, labels.spec) else { return };
     let ego = At::new(spec.max_m().y, spec.max_m().x) * scale_px_per_m(map.width(), spec);
-    let corner = |x: f64, y: f64| ego + Vector2::new(x, y) * share;
+    let (sin, cos) = libm::sincos(heading_rad);
+    // A turn to the left, in a picture whose y grows downwards.
+    let turned = |x: f64, y: f64| Vector2::new(x * cos + y * sin, y * cos - x * sin);
+    let corner = |x: f64, y: f64| ego + turned(x, y) * share;
     marks::ego(map, [corner(0.0, -13.0), corner(-8.5, 9.0), corner(0.0, 4.5), corner(8.5, 9.0)]);
 }
 
 /// The scale bar and the axes under a map.
 fn mark_foot(
     picture: &mut RgbImage,
-    spec: &GridSpec,
+    labels: &Painted,
     (left, top): (u32, u32),
     (width, height): (u32, u32),
 ) {
-    let scale = scale_px_per_m(width, spec);
+    let scale = scale_px_per_m(width, labels.spec);
     let length_m = marks::round_length_m(f64::from(width) / scale / 6.0);
     let middle = f64::from(height + top) + f64::from(FOOT_PX) * 0.6;
     marks::scale_bar(picture, At::new(f64::from(left), middle), length_m * scale, length_m);
     if width > 300 {
-        marks::axes(picture, At::new(f64::from(left + width), middle));
+        let right = At::new(f64::from(left + width), middle);
+        marks::axes(picture, right, labels.heading_rad);
     }
 }
 

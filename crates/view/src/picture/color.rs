@@ -9,7 +9,7 @@ pub(crate) const SKY: Rgb<u8> = Rgb([52, 60, 74]);
 /// The floor under the grid, where nothing is known to stand.
 pub(crate) const FLOOR: Rgb<u8> = Rgb([50, 56, 67]);
 /// Columns that no ray reached.
-pub(crate) const UNOBSERVED: Rgb<u8> = Rgb([40, 45, 54]);
+pub(crate) const UNOBSERVED: Rgb<u8> = Rgb([14, 16, 20]);
 /// Columns that rays crossed and nothing stopped.
 pub(crate) const FREE: Rgb<u8> = Rgb([88, 97, 112]);
 /// Where the file itself says that it has no label.

@@ -81,6 +81,7 @@ mod tests {
             mask_camera: Some(&grid(camera, u8::from(cameras))),
             free: FREE,
             palette: &Palette::of(&["a"]),
+            heading_rad: Some(0.0),
         };
         columns(&labels)[0]
     }

@@ -13,7 +13,7 @@ use crate::picture::perspective::mark_ego;
 use crate::picture::plate::{Plate, blank};
 use crate::picture::sheet::two;
 
-/// What became of a voxel from the first set to the second.
+/// How a voxel differs from the first set, A, to the second, B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Occupied in the second only.
@@ -27,13 +27,13 @@ pub enum Change {
 }
 
 const CHANGES: [(Change, &str, Rgb<u8>); 4] = [
-    (Change::Gained, "gained", Rgb([70, 165, 255])),
-    (Change::Lost, "lost", Rgb([255, 130, 40])),
-    (Change::Class, "class changed", Rgb([255, 240, 120])),
-    (Change::Mask, "mask changed", Rgb([104, 78, 128])),
+    (Change::Gained, "occupied in B only", Rgb([70, 165, 255])),
+    (Change::Lost, "occupied in A only", Rgb([255, 130, 40])),
+    (Change::Class, "two classes", Rgb([255, 240, 120])),
+    (Change::Mask, "masks differ", Rgb([150, 96, 196])),
 ];
 /// Occupied by one class in both.
-const SAME: Rgb<u8> = Rgb([148, 154, 164]);
+const SAME: Rgb<u8> = Rgb([206, 210, 216]);
 
 /// How many voxels changed, and how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -113,15 +113,14 @@ impl Plate<'_> {
     /// If the grids are not of one spec's shape.
     pub fn difference(&self, sets: &Difference, aim: &Aim) -> RgbImage {
         sets.check();
-        let spec = sets.from.spec;
         let above = |room| {
-            map_with_foot(spec, room, |size| {
+            map_with_foot(&sets.from, room, |size| {
                 let mut map = map(sets, size);
-                mark_map(&mut map, spec);
+                mark_map(&mut map, &sets.from);
                 map
             })
         };
-        let body = two(self.body_px(), above, |room| cubes(sets, &aim.orbit(spec, room)));
+        let body = two(self.body_px(), above, |room| cubes(sets, &aim.at(&sets.from, room)));
         self.around(&body, &legend(sets))
     }
 }
@@ -134,7 +133,7 @@ fn legend(sets: &Difference) -> Legend {
     let legend = CHANGES.iter().fold(Legend::default(), entry);
     let same = (0..sets.from.spec.len()).filter(|&flat| sets.occupied(flat)).count() as u64
         - CHANGES[..3].iter().map(|(change, ..)| counts.of(*change)).sum::<u64>();
-    let legend = legend.with(SAME, &format!("occupied, same: {same}"));
+    let legend = legend.with(SAME, &format!("the same in both: {same}"));
     let legend = legend.with(FREE, sets.from.free_name());
     if sets.from.mask_lidar.is_some() { legend.with(UNOBSERVED, "unobserved") } else { legend }
 }
@@ -150,7 +149,7 @@ fn cubes(sets: &Difference, orbit: &Orbit) -> RgbImage {
         opacity: 1.0,
     };
     cubes.render(&lens, &mut scene);
-    mark_ego(&mut scene, &lens, sets.from.spec);
+    mark_ego(&mut scene, &lens, &sets.from);
     scene
 }
 
@@ -177,7 +176,7 @@ fn look_down(sets: &Difference, voxels: std::ops::Range<usize>) -> Look {
     }
     if let Some(flat) = top_down().find(|&flat| sets.occupied(flat)) {
         let height = (flat - voxels.start + 1) as f64 / voxels.len() as f64;
-        return (3, lit(SAME, 0.5 + 0.4 * height));
+        return (3, lit(SAME, 0.72 + 0.28 * height));
     }
     let masked = top_down().any(|flat| sets.change(flat).is_some());
     match top_down().any(|flat| sets.from.observed(flat)) {

@@ -5,7 +5,7 @@ use occlabel_core::Palette;
 
 use crate::picture::canvas::{At, polygon};
 use crate::picture::color::{FAINT_INK, INK, mix};
-use crate::picture::font::{CAPITAL_ROWS, width_px, write};
+use crate::picture::font::{CAPITAL_ROWS, fitting as fitting_text, width_px, write};
 use crate::picture::painted::{Painted, hidden};
 
 const STEP_PX: f64 = 1.75;
@@ -58,16 +58,26 @@ impl Legend {
         self.draw_within(picture, at, f64::INFINITY);
     }
 
-    /// Draws it in no more than a height: with less between the rows if it needs be, and then without
-    /// the last of them.
+    /// Draws it in no more than a height: with less between the rows if it needs be, and then with how
+    /// many there are more in place of the last of them.
     pub(crate) fn draw_within(&self, picture: &mut RgbImage, at: At, height_px: f64) {
         let row_px = (height_px / self.entries.len().max(1) as f64).clamp(SWATCH_PX + 2.0, ROW_PX);
         let fitting = (height_px / row_px) as usize;
-        for (row, (color, text)) in self.entries.iter().enumerate().take(fitting) {
-            let left = At::new(at.x, at.y + (row as f64 + 0.5) * row_px);
+        let all = self.entries.len();
+        let told = if fitting < all { fitting.saturating_sub(1) } else { all };
+        let write_row = |picture: &mut RgbImage, row: usize, text: &str| {
+            let middle = at.y + (row as f64 + 0.5) * row_px;
+            let left = At::new(at.x + SWATCH_PX + GAP_PX, middle - CAPITAL_ROWS / 2.0 * STEP_PX);
+            let room_px = f64::from(picture.width()) - left.x - 2.0;
+            write(picture, left, STEP_PX, INK, &fitting_text(text, STEP_PX, room_px));
+            At::new(at.x, middle)
+        };
+        for (row, (color, text)) in self.entries.iter().enumerate().take(told) {
+            let left = write_row(picture, row, text);
             swatch(picture, left, *color);
-            let top = left.y - CAPITAL_ROWS / 2.0 * STEP_PX;
-            write(picture, At::new(at.x + SWATCH_PX + GAP_PX, top), STEP_PX, INK, text);
+        }
+        if told < fitting && told < all {
+            write_row(picture, told, &format!("and {} more", all - told));
         }
     }
 }

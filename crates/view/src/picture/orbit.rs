@@ -4,6 +4,7 @@ use nalgebra::{Point3, Vector3};
 use occlabel_core::GridSpec;
 
 use crate::picture::lens::{Lens, TAN_HALF_VIEW};
+use crate::picture::painted::Painted;
 use crate::picture::plate::body_width_px;
 
 /// A camera on a sphere around a target, in the grid frame.
@@ -92,6 +93,12 @@ impl Default for Aim {
 }
 
 impl Aim {
+    /// The same, its azimuth counted from the ego's forward.
+    pub(crate) fn at(&self, labels: &Painted, size: (u32, u32)) -> Orbit {
+        let azimuth_rad = self.azimuth_rad + labels.heading_rad.unwrap_or(0.0);
+        Self { azimuth_rad, ..*self }.orbit(labels.spec, size)
+    }
+
     /// The camera of a picture of this size, without a legend.
     pub(crate) fn orbit(&self, spec: &GridSpec, (width, height): (u32, u32)) -> Orbit {
         let orbit = Orbit {

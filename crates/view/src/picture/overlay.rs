@@ -62,7 +62,7 @@ impl Plate<'_> {
         let mut tiles = Tiles::new(&aspects, self.body_px());
         for (place, view) in views.iter().enumerate() {
             let size = tiles.size_px(view.aspect());
-            let bare = if view.image.is_some() { "" } else { " (the log has no image)" };
+            let bare = if view.image.is_some() { "" } else { " (no image at this keyframe)" };
             let caption = format!("{}{bare}", view.name);
             tiles.put(place as u32, &view.overlay(labels, size), &caption);
         }

@@ -24,6 +24,8 @@ pub struct Painted<'a> {
     pub free: u8,
     /// The colours of the classes.
     pub palette: &'a Palette,
+    /// Where the ego's forward points in the grid frame; without it, its mark is left out.
+    pub heading_rad: Option<f64>,
 }
 
 impl<'a> Painted<'a> {
@@ -36,6 +38,7 @@ impl<'a> Painted<'a> {
             mask_camera: keyframe.mask_camera.as_ref(),
             free: scene.free,
             palette: &scene.palette,
+            heading_rad: keyframe.heading_rad,
         }
     }
 
@@ -71,7 +74,7 @@ impl<'a> Painted<'a> {
 
     /// Whether the labels tell what was not observed from what is free.
     pub(crate) fn tells_unobserved(&self) -> bool {
-        self.mask_lidar.is_some() || self.semantics.values().contains(&NO_LABEL)
+        self.mask_lidar.is_some()
     }
 
     /// What free voxels are called.

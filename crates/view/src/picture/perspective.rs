@@ -1,8 +1,8 @@
 //! Labels as lit cubes.
 
 use image::{Rgb, RgbImage};
-use nalgebra::Point3;
-use occlabel_core::{GridSpec, Pose};
+use nalgebra::{Point3, Rotation3, Vector3};
+use occlabel_core::Pose;
 
 use crate::picture::color::FLOOR;
 use crate::picture::cubes::Cubes;
@@ -35,7 +35,7 @@ impl Plate<'_> {
     /// # Panics
     /// If the grids are not of the spec's shape.
     pub fn perspective(&self, labels: &Painted, aim: &Aim) -> RgbImage {
-        let body = cubes(labels, &aim.orbit(labels.spec, self.body_px()));
+        let body = cubes(labels, &aim.at(labels, self.body_px()));
         self.around(&body, &legend(labels))
     }
 
@@ -74,7 +74,7 @@ pub(crate) fn cubes(labels: &Painted, orbit: &Orbit) -> RgbImage {
     let lens = orbit.lens();
     let mut scene = blank(orbit.width, orbit.height);
     render(labels, &lens, &mut scene);
-    mark_ego(&mut scene, &lens, labels.spec);
+    mark_ego(&mut scene, &lens, labels);
     scene
 }
 
@@ -100,11 +100,15 @@ fn color(labels: &Painted, flat: usize, cameras: bool) -> Rgb<u8> {
     if cameras && labels.unseen(flat) { hidden(color) } else { color }
 }
 
-pub(crate) fn mark_ego(scene: &mut RgbImage, lens: &Lens, spec: &GridSpec) {
-    let extent_m = spec.max_m() - spec.min_m();
+/// The ego on the ground; nothing if nobody tells where it points.
+pub(crate) fn mark_ego(scene: &mut RgbImage, lens: &Lens, labels: &Painted) {
+    let Some(heading_rad) = labels.heading_rad else { return };
+    let extent_m = labels.spec.max_m() - labels.spec.min_m();
+    let ego = Rotation3::from_axis_angle(&Vector3::z_axis(), heading_rad);
     let size_m = extent_m.x.max(extent_m.y) / 40.0;
     let dart = [(1.7, 0.0), (-1.0, 0.7), (-0.5, 0.0), (-1.0, -0.7)];
-    let corners = dart.map(|(x, y)| lens.project(&Point3::new(x * size_m, y * size_m, 0.0)));
+    let corners =
+        dart.map(|(x, y)| lens.project(&(ego * Point3::new(x * size_m, y * size_m, 0.0))));
     if let [Some(nose), Some(left), Some(notch), Some(right)] = corners {
         marks::ego(scene, [nose, left, notch, right]);
     }

@@ -18,13 +18,13 @@ impl Plate<'_> {
         labels.check();
         let columns = columns(labels);
         let above = |room| {
-            map_with_foot(labels.spec, room, |size| {
+            map_with_foot(labels, room, |size| {
                 let mut map = map(labels, &columns, size);
-                mark_map(&mut map, labels.spec);
+                mark_map(&mut map, labels);
                 map
             })
         };
-        let behind = |room| cubes(labels, &aim.orbit(labels.spec, room));
+        let behind = |room| cubes(labels, &aim.at(labels, room));
         let body = two(self.body_px(), above, behind);
         self.around(&body, &legend(labels, &columns))
     }

@@ -47,7 +47,7 @@ impl<'a> Strip<'a> {
         let columns = columns(labels);
         let size = map_size(labels.spec, self.tiles.size_px(aspect(labels.spec)));
         let mut tile = map(labels, &columns, size);
-        mark_ego(&mut tile, labels.spec, (f64::from(size.0) / 700.0).clamp(0.35, 1.0));
+        mark_ego(&mut tile, labels, (f64::from(size.0) / 700.0).clamp(0.35, 1.0));
         self.tiles.put(self.drawn, &tile, caption);
         self.drawn += 1;
         self.note(labels, &columns);
