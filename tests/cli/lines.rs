@@ -125,14 +125,17 @@ fn the_demo_labels_a_log_of_its_own_twice() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let output = folder.path().join("demo");
     let first = occlabel(&["demo", "--output", text(&output)]).exits(0);
-    for step in ["simulate --world street", "label --format nuscenes", "quality", "A9w"] {
+    let steps = ["simulate --world street", "label --format nuscenes", "quality", "A9w", "file://"];
+    for step in steps {
         assert!(first.stdout.contains(step), "{step} in {}", first.stdout);
     }
     let hash = tree_hash(&output);
     let names: Vec<String> = files_under(&output).into_keys().collect();
     assert!(names.iter().any(|name| name == "log/v1.0-sim/scene.json"));
-    assert!(names.iter().any(|name| name == "pictures/perspective.png"));
-    assert!(names.iter().any(|name| name == "labels/manifest.json"));
+    let shown = ["pictures/sheet.png", "pictures/overlay.png", "labels.html", "report.html"];
+    for made in shown.into_iter().chain(["labels/manifest.json"]) {
+        assert!(names.iter().any(|name| name == made), "{made}");
+    }
     occlabel(&["demo", "--output", text(&output)]).exits(0);
     assert_eq!(tree_hash(&output), hash);
 }

@@ -1,12 +1,10 @@
-//! `demo`: a small street is simulated, labelled, judged against its exact truth, and drawn.
+//! `demo`: a small street is simulated, labelled, judged against its exact truth, and shown.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum};
-use occlabel_core::{Fault, Palette};
-use occlabel_labels::{LabelTree, Manifest, TreePath, create_dir, read_labels, write_file};
+use occlabel_labels::{Manifest, create_dir};
 use occlabel_simulate::shipped_world;
-use occlabel_view::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
 
 use crate::args::{Cli, DemoArgs, Format};
 use crate::console::Console;
@@ -15,14 +13,9 @@ use crate::format_flags::name;
 
 /// The world that is driven through.
 const WORLD: &str = "street";
-/// Longer side of the map from above, pixels: a whole number a voxel.
-const MAP_PX: u32 = 800;
-/// Size of the picture in perspective, pixels.
-const PERSPECTIVE_PX: (u32, u32) = (1600, 900);
 
 pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, Stop> {
-    let [log, labels, pictures] =
-        ["log", "labels", "pictures"].map(|name| args.output.join(name).display().to_string());
+    let [log, labels] = ["log", "labels"].map(|name| args.output.join(name).display().to_string());
     let simulate =
         ["occlabel", "simulate", "--world", WORLD, "--format", "nuscenes", "--output", &log];
     let label = ["occlabel", "label", "--format", "nuscenes", "--input", &log, "--output", &labels];
@@ -32,9 +25,31 @@ pub(crate) fn run(args: &DemoArgs, console: &Console) -> Result<Outcome, Stop> {
     }
     let outcome = step(&[&label[..], &["--evidence"]].concat(), console)?;
     step(&judge, console)?;
-    draw(Path::new(&labels), Path::new(&pictures), console)?;
-    tell_next(console);
+    let shown = show(&args.output, &log, &labels, console)?;
+    tell_next(&shown, Path::new(&labels), console)?;
     Ok(outcome)
+}
+
+/// Shows the labels as pictures and pages: the files that were made.
+fn show(output: &Path, log: &str, labels: &str, console: &Console) -> Result<Vec<PathBuf>, Stop> {
+    create_dir(&output.join("pictures"))?;
+    let with_log = ["--format", "nuscenes", "--input", log];
+    let cubes = ["--picture", "perspective"];
+    let over_images = [&["--picture", "overlay"][..], &with_log].concat();
+    let shown: [(&str, &str, &[&str]); 5] = [
+        ("view", "pictures/sheet.png", &[]),
+        ("view", "pictures/perspective.png", &cubes),
+        ("view", "pictures/overlay.png", &over_images),
+        ("view", "labels.html", &[]),
+        ("report", "report.html", &[]),
+    ];
+    let make = |(command, name, flags): (&str, &str, &[&str])| {
+        let file = output.join(name);
+        let to = file.display().to_string();
+        let line = [&["occlabel", command, labels, "--output", &to], flags].concat();
+        step(&line, console).map(|_| file)
+    };
+    shown.into_iter().map(make).collect()
 }
 
 /// Whether an earlier demo drove through the same world: then its labels are found done.
@@ -52,45 +67,33 @@ fn step(line: &[&str], console: &Console) -> Result<Outcome, Stop> {
     Ok(outcome)
 }
 
-/// Draws the keyframe in the middle of the drive.
-fn draw(labels: &Path, pictures: &Path, console: &Console) -> Result<(), Stop> {
-    let Some(manifest) = Manifest::load(&labels.join("manifest.json"))? else { return Ok(()) };
-    let Some((scene, record)) = manifest.scenes.first_key_value() else { return Ok(()) };
-    let Some(token) = record.keyframes.get(record.keyframes.len() / 2) else { return Ok(()) };
-    let spec = manifest.grid.spec()?;
-    let file = LabelTree::new(labels).place(&TreePath::labels(scene, token)?);
-    let arrays = read_labels(&file, &spec)?;
-    let names: Vec<&str> = manifest.classes.iter().map(|class| class.name.as_str()).collect();
-    let painted = Painted {
-        spec: &spec,
-        semantics: &arrays.semantics,
-        mask_lidar: Some(&arrays.mask_lidar),
-        mask_camera: Some(&arrays.mask_camera),
-        free: u8::try_from(manifest.free).unwrap_or(u8::MAX),
-        palette: &Palette::of(&names),
-    };
-    write_pictures(&painted, pictures)?;
-    let look = pictures.display();
-    console.result(&format!("Look at     {look}/birds_eye.png and {look}/perspective.png"));
-    console.result(&format!("Read        numpy.load(\"{}\")[\"semantics\"]", file.display()));
-    Ok(())
-}
-
-fn write_pictures(labels: &Painted, pictures: &Path) -> Result<(), Fault> {
-    let (width, height) = PERSPECTIVE_PX;
-    create_dir(pictures)?;
-    let above = birds_eye(labels, &BirdsEye { map_px: MAP_PX });
-    write_file(&pictures.join("birds_eye.png"), &png(&above))?;
-    let behind = perspective(labels, &Orbit::behind(labels.spec, width, height));
-    write_file(&pictures.join("perspective.png"), &png(&behind))
-}
-
-/// Formats are named by the list that the program takes.
-fn tell_next(console: &Console) {
+/// How to open what was made, and what to do next. Formats are named by the list that the program takes.
+fn tell_next(shown: &[PathBuf], labels: &Path, console: &Console) -> Result<(), Stop> {
+    console.result("Open these with any browser; they need neither server nor network:");
+    for file in shown {
+        let full = std::fs::canonicalize(file).unwrap_or_else(|_| file.clone());
+        console.result(&format!("            file://{}", full.display()));
+    }
+    if let Some(arrays) = first_arrays(labels)? {
+        console.result(&format!("Read        numpy.load(\"{}\")[\"semantics\"]", arrays.display()));
+    }
     let formats: Vec<String> =
         Format::value_variants().iter().map(|format| name(*format)).collect();
     let formats = formats.join("|");
     console.result(&format!("Your log    occlabel check --format {formats} --input DIR"));
     console.result("            occlabel label --format FORMAT --input DIR --output LABELS");
     console.result("Its quality occlabel quality --held-out 5 --format FORMAT --input DIR");
+    console.result("Its looks   occlabel view LABELS --output labels.html");
+    console.result(
+        "            occlabel view LABELS --output labels.mcap --format FORMAT --input DIR",
+    );
+    Ok(())
+}
+
+/// The first keyframe's arrays.
+fn first_arrays(labels: &Path) -> Result<Option<PathBuf>, Stop> {
+    let manifest = Manifest::load(&labels.join("manifest.json"))?;
+    let files = manifest.into_iter().flat_map(|manifest| manifest.files);
+    let mut files = files.map(|file| labels.join(file.path.as_str()));
+    Ok(files.find(|file| file.ends_with("labels.npz")))
 }

@@ -35,6 +35,7 @@ mod presets;
 mod progress;
 mod quality;
 mod ray_origins;
+mod report;
 mod shown_set;
 mod simulate;
 mod threads;
@@ -109,6 +110,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
         Command::View(args) => view::run(args, console),
+        Command::Report(args) => report::run(args, console),
         Command::MergeManifests(args) => merge_manifests::run(args, console),
         Command::Verify(args) => verify::run(args, console),
         Command::Inspect(args) => inspect::run(args, console),

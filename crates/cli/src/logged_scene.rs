@@ -2,7 +2,7 @@
 
 use occlabel_core::{Fault, Keyframe, Pose, Scene};
 use occlabel_logs::SceneSource;
-use occlabel_pipeline::Config;
+use occlabel_pipeline::{Config, Rules};
 
 use crate::args::{ConfigArgs, LogArgs};
 use crate::exit::Stop;
@@ -13,6 +13,8 @@ use crate::shown_set::ShownSet;
 pub(crate) struct LoggedScene {
     pub(crate) source: Box<dyn SceneSource>,
     pub(crate) scene: Scene,
+    /// What the log is read by.
+    pub(crate) rules: Rules,
     /// Whether grids stand in the lidar's frame, not in the ego's.
     in_lidar_frame: bool,
 }
@@ -35,7 +37,7 @@ impl LoggedScene {
         };
         let scene = opened.source.load(scene)?;
         let in_lidar_frame = labels.set.frame() == "lidar";
-        Ok(Self { source: opened.source, scene, in_lidar_frame })
+        Ok(Self { source: opened.source, scene, rules: opened.rules, in_lidar_frame })
     }
 
     /// The keyframe of a token.

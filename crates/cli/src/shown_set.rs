@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use occlabel_core::{Fault, Palette, Pose};
+use nalgebra::Vector3;
+use occlabel_core::{ColorSet, Fault, Palette, Pose, Timestamp};
 use occlabel_dialects::{KeyframeKey, LabelSet, Wanted};
 use occlabel_labels::{Manifest, PoseRecord, SceneRecord, read_evidence};
 use occlabel_view::{ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};
@@ -12,6 +13,7 @@ pub(crate) struct ShownSet {
     pub(crate) set: LabelSet,
     pub(crate) manifest: Option<Manifest>,
     folder: PathBuf,
+    colors: ColorSet,
 }
 
 impl ShownSet {
@@ -20,8 +22,19 @@ impl ShownSet {
     /// # Errors
     /// If there are no labels, or of no one dialect.
     pub(crate) fn open(folder: &Path, dialect: Option<&str>) -> Result<Self, Fault> {
-        let set = LabelSet::open(folder, dialect)?;
-        Ok(Self { set, manifest: Manifest::load_tree(folder)?, folder: folder.to_owned() })
+        if folder.is_file() {
+            let place = folder.display().to_string();
+            let fault = Fault::new("label-set", place, "a folder of labels", "a file");
+            return Err(fault.hint("give the folder that it belongs to"));
+        }
+        let set = LabelSet::open(folder, dialect).map_err(|fault| with_run(fault, folder))?;
+        let manifest = Manifest::load_tree(folder)?;
+        Ok(Self { set, manifest, folder: folder.to_owned(), colors: ColorSet::Standard })
+    }
+
+    /// The same in other colours.
+    pub(crate) fn colored(self, colors: ColorSet) -> Self {
+        Self { colors, ..self }
     }
 
     /// The scenes by name.
@@ -46,17 +59,18 @@ impl ShownSet {
         Ok(ShownScene {
             name: name.to_owned(),
             frame: self.set.frame().to_owned(),
-            palette: Palette::of(&self.set.classes().names()),
+            palette: Palette::with(&self.set.classes().names(), self.colors),
             free: self.set.classes().free_index(),
             cameras: record.map_or_else(Vec::new, |record| record.cameras.clone()),
             tracks: record.map_or_else(Vec::new, tracks),
         })
     }
 
-    /// The keyframes of a scene in order of time, as far as the manifest tells it, or of these tokens.
+    /// The keyframes of a scene in order of time, as far as the manifest or their tokens tell it, or
+    /// these of them.
     ///
     /// # Errors
-    /// If the scene does not have one of them.
+    /// If the scene does not have one of them, or has none at all.
     pub(crate) fn keyframes(
         &self,
         scene: &str,
@@ -64,14 +78,37 @@ impl ShownSet {
     ) -> Result<Vec<KeyframeKey>, Fault> {
         let of_scene = self.set.keyframes().iter().filter(|key| key.scene == scene);
         let mut keys: Vec<_> = of_scene.cloned().collect();
-        keys.sort_by_key(|key| self.pose(key).map(|pose| pose.time_ns));
+        let number = |key: &KeyframeKey| key.token.rsplit(['-', '_']).next()?.parse::<u64>().ok();
+        keys.sort_by_key(|key| (self.pose(key).map(|pose| pose.time_ns), number(key)));
         let has = |token: &&String| keys.iter().any(|key| &key.token == *token);
         if let Some(absent) = tokens.iter().find(|token| !has(token)) {
             let names: Vec<_> = keys.iter().map(|key| key.token.as_str()).collect();
             return Err(self.unknown("keyframe", &names, absent));
         }
         keys.retain(|key| tokens.is_empty() || tokens.contains(&key.token));
+        if keys.is_empty() {
+            let place = self.folder.display().to_string();
+            return Err(Fault::new("no-keyframes", place, "labelled keyframes", "none"));
+        }
         Ok(keys)
+    }
+
+    /// The keyframe of a scene that is shown where one is: the named one, or that in the middle.
+    ///
+    /// # Errors
+    /// As for [`ShownSet::keyframes`], or if several are named.
+    pub(crate) fn keyframe(&self, scene: &str, tokens: &[String]) -> Result<KeyframeKey, Fault> {
+        if tokens.len() > 1 {
+            let found = format!("{} of them", tokens.len());
+            return Err(Fault::new("keyframes", "--keyframes", "one keyframe", found));
+        }
+        let keys = self.keyframes(scene, tokens)?;
+        Ok(keys[keys.len() / 2].clone())
+    }
+
+    /// When a keyframe was, if the manifest tells.
+    pub(crate) fn time(&self, key: &KeyframeKey) -> Option<Timestamp> {
+        self.pose(key).map(PoseRecord::time)
     }
 
     /// All that the files tell of a keyframe.
@@ -84,8 +121,9 @@ impl ShownSet {
         let pose = self.pose(key);
         Ok(ShownKeyframe {
             token: key.token.clone(),
-            time: pose.map(PoseRecord::time),
+            time: self.time(key),
             world_from_grid: pose.map(|pose| self.world_from_grid(pose)),
+            heading_rad: self.heading_rad(pose),
             evidence: self.evidence(key)?,
             spec: labels.spec,
             semantics: labels.semantics,
@@ -122,6 +160,15 @@ impl ShownSet {
         }
     }
 
+    /// Where the ego's forward points in the grid frame.
+    fn heading_rad(&self, pose: Option<&PoseRecord>) -> Option<f64> {
+        if self.set.frame() != "lidar" {
+            return Some(0.0);
+        }
+        let forward = Pose::from(&pose?.ego_from_lidar).inverse() * Vector3::x();
+        Some(forward.y.atan2(forward.x))
+    }
+
     fn unknown(&self, what: &'static str, names: &[&str], found: &str) -> Fault {
         let some = names.iter().take(5).copied().collect::<Vec<_>>().join(", ");
         let rest =
@@ -129,6 +176,16 @@ impl ShownSet {
         let place = self.folder.display().to_string();
         Fault::new(what, place, format!("a {what} of {some}{rest}"), format!("`{found}`"))
     }
+}
+
+/// What is said of a folder that a run has begun to write, and has finished no keyframe in.
+fn with_run(fault: Fault, folder: &Path) -> Fault {
+    if !["dialect", "label-set"].contains(&fault.rule) || !folder.join("run.json").is_file() {
+        return fault;
+    }
+    let found = "a run that has finished none yet";
+    Fault::new("no-keyframes", folder.display().to_string(), "labelled keyframes", found)
+        .hint("the `label` command that began it goes on from there")
 }
 
 fn tracks(record: &SceneRecord) -> Vec<ShownTrack> {

@@ -189,6 +189,11 @@ impl GridSpec {
         self.min_m + u.component_mul(&self.size_m)
     }
 
+    /// The lower corner of a voxel in the grid frame, metres.
+    pub fn corner(&self, voxel: VoxelIndex) -> Point3<f64> {
+        self.min_m + Vector3::from(voxel.0.map(|i| i as f64)).component_mul(&self.size_m)
+    }
+
     /// The place of a voxel in the flat array, if it is in the grid.
     #[inline]
     pub fn flat(&self, voxel: VoxelIndex) -> Option<usize> {

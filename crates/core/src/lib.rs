@@ -55,7 +55,7 @@ pub use instant::{Instant, PlacedObject, StandingBox};
 pub use keyframes::{KeyframeSettings, KeyframeSource, reference_lidar};
 pub use mcap_settings::McapSettings;
 pub use occupancy::{Evidence, OccupancyLabels, RayCounts, VoxelState, VoxelVote};
-pub use palette::Palette;
+pub use palette::{ColorSet, Palette};
 pub use pose::{Pose, RigidMap, slerp};
 pub use scene::{
     Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, Refusal, Scene, Sweep, SweepHeader,

@@ -48,7 +48,8 @@ pub struct Exposure {
     pub time: Timestamp,
     /// Where the camera stood then.
     pub world_from_camera: Pose,
-    /// The image's file, relative to the log's root, where the log has it as a file of its own.
+    /// The image's file, relative to the log's root, where the log has images as files of their own;
+    /// the file may be absent.
     pub image: Option<String>,
 }
 

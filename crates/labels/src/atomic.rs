@@ -8,7 +8,7 @@
 //! written again.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, ErrorKind};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
@@ -31,6 +31,31 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         .and_then(|part| disk::rename(part, path))
         .and_then(|_| sync_folder_of(path))
         .map_err(|error| write_fault(path, bytes.len(), &error))
+}
+
+/// Writes a file piece by piece: `write` is given where to. It stands under its name once it is whole.
+/// Its folder must exist.
+///
+/// # Errors
+/// If it cannot be written, or `write` fails; then what was there before stays. If the path is a
+/// symbolic link.
+pub fn write_pieces<E: From<Fault>>(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
+) -> Result<(), E> {
+    refuse_symlink(path)?;
+    let begun = remove_leftovers(path).and_then(|()| begin_part(path));
+    let part = begun.map_err(|error| write_fault(path, 0, &error))?;
+    let mut pieces = BufWriter::new(part.as_file());
+    write(&mut pieces)?;
+    let flushed = pieces.flush();
+    drop(pieces);
+    let bytes = part.as_file().metadata().map_or(0, |meta| meta.len() as usize);
+    let whole = flushed.and_then(|()| disk::sync(part.as_file()));
+    whole
+        .and_then(|()| disk::rename(part, path))
+        .and_then(|_| sync_folder_of(path))
+        .map_err(|error| write_fault(path, bytes, &error).into())
 }
 
 /// Creates a file with its contents, both at once. `false` if there is one already, or if another, who
@@ -146,15 +171,20 @@ pub(crate) fn refuse_symlink(path: &Path) -> Result<(), Fault> {
 
 /// Writes and syncs the bytes beside the path; dropped, the part is removed.
 fn write_part(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
+    let mut part = begin_part(path)?;
+    disk::write(&mut part, bytes)?;
+    disk::sync(part.as_file())?;
+    Ok(part)
+}
+
+/// An empty file beside the path; dropped, it is removed.
+fn begin_part(path: &Path) -> io::Result<NamedTempFile> {
     let prefix = part_prefix(path);
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(PART);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut part = disk::create_part(&builder, folder_of(path))?;
-    disk::write(&mut part, bytes)?;
-    disk::sync(part.as_file())?;
-    Ok(part)
+    disk::create_part(&builder, folder_of(path))
 }
 
 /// Removes what a killed process left of the same file. A file has one writer at a time: the locks
@@ -229,6 +259,33 @@ mod tests {
         write_file(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(names(folder.path()), ["a.txt"]);
+    }
+
+    #[test]
+    fn a_file_in_pieces_is_there_once_it_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_file(&path, b"old").unwrap();
+        let broken = write_pieces(&path, |to| {
+            to.write_all(b"half").unwrap();
+            Err(Fault::new("test", "there", "a whole", "a half"))
+        });
+        assert_eq!(broken.unwrap_err().rule, "test");
+        assert_eq!(
+            (fs::read(&path).unwrap(), names(folder.path())),
+            (b"old".to_vec(), vec!["a.txt".into()])
+        );
+        let whole = write_pieces::<Fault>(&path, |to| {
+            to.write_all(b"whole ").unwrap();
+            assert_eq!(fs::read(&path).unwrap(), b"old");
+            to.write_all(b"now").unwrap();
+            Ok(())
+        });
+        assert!(whole.is_ok());
+        assert_eq!(
+            (fs::read(&path).unwrap(), names(folder.path())),
+            (b"whole now".to_vec(), vec!["a.txt".into()])
+        );
     }
 
     #[cfg(unix)]

@@ -42,7 +42,7 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, Fault>
             "a file as occlabel writes it",
             error.to_string(),
         )
-        .hint("remove it, or give another --output")
+        .hint("mend it, take it away, or name another folder")
     })
 }
 

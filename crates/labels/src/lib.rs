@@ -56,7 +56,7 @@ mod shards;
 mod tree;
 mod verify;
 
-pub use atomic::{create_dir, remove_file, write_file};
+pub use atomic::{create_dir, remove_file, write_file, write_pieces};
 pub use files::{FileRecord, hash_files};
 pub use inputs::{InputHashes, InputMark, InputRecord};
 pub use journal::{Journal, JournalEntry};

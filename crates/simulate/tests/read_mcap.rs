@@ -21,10 +21,10 @@ fn read() -> ReadOptions {
     ReadOptions::of(taxonomy())
 }
 
-fn nuscenes(drive: &Drive, root: &Path) -> NuScenesLog {
+fn nuscenes(drive: &Drive, images: Images, root: &Path) -> NuScenesLog {
     let output = Output::create(root).unwrap();
     let drives = std::slice::from_ref(drive);
-    let (_, last) = write_nuscenes(drives, &taxonomy(), Images::None, &output).unwrap();
+    let (_, last) = write_nuscenes(drives, &taxonomy(), images, &output).unwrap();
     output.finish(last).unwrap();
     let options = NuScenesOptions {
         read: read(),
@@ -35,9 +35,9 @@ fn nuscenes(drive: &Drive, root: &Path) -> NuScenesLog {
     NuScenesLog::open(root, options).unwrap()
 }
 
-fn mcap(drive: &Drive, root: &Path) -> McapLog {
+fn mcap(drive: &Drive, images: Images, root: &Path) -> McapLog {
     let output = Output::create(root).unwrap();
-    let (_, last) = write_mcap(drive, &taxonomy(), Images::None, &output).unwrap();
+    let (_, last) = write_mcap(drive, &taxonomy(), images, &output).unwrap();
     output.finish(&last).unwrap();
     let options = McapOptions {
         read: read(),
@@ -48,18 +48,18 @@ fn mcap(drive: &Drive, root: &Path) -> McapLog {
     McapLog::open(root, options).unwrap()
 }
 
-fn logs() -> (TempDir, NuScenesLog, McapLog) {
+fn logs(images: Images) -> (TempDir, NuScenesLog, McapLog) {
     let world = World::parse(TINY, "tiny.toml").unwrap();
     let drive = Drive::new(world, &taxonomy()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (a, b) = (folder.path().join("nuscenes"), folder.path().join("mcap"));
-    let logs = (nuscenes(&drive, &a), mcap(&drive, &b));
+    let logs = (nuscenes(&drive, images, &a), mcap(&drive, images, &b));
     (folder, logs.0, logs.1)
 }
 
 #[test]
 fn the_logs_of_one_drive_hold_the_same_scene() {
-    let (_folder, nuscenes, mcap) = logs();
+    let (_folder, nuscenes, mcap) = logs(Images::None);
     let (a, b) = (nuscenes.load("tiny").unwrap(), mcap.load("tiny").unwrap());
     assert!(b.warnings.is_empty() && b.refused.is_empty(), "{:?} {:?}", b.warnings, b.refused);
     assert_eq!(nuscenes.defaults().reference_lidar, mcap.defaults().reference_lidar);
@@ -76,6 +76,37 @@ fn the_logs_of_one_drive_hold_the_same_scene() {
     assert!(points > 1000, "{points}");
     assert_same_tracks(&a, &b);
     assert_same_keyframes(&a, &b);
+}
+
+#[test]
+fn an_exposures_image_is_the_same_bytes_in_both_logs() {
+    let (folder, nuscenes, mcap) = logs(Images::All);
+    let (a, b) = (nuscenes.load("tiny").unwrap(), mcap.load("tiny").unwrap());
+    let mut seen = 0;
+    for (a_key, b_key) in a.keyframes.iter().zip(&b.keyframes) {
+        for (a_seen, b_seen) in a_key.exposures.iter().zip(&b_key.exposures) {
+            let file = folder.path().join("nuscenes").join(a_seen.image.as_ref().unwrap());
+            let bytes = std::fs::read(file).unwrap();
+            assert_eq!(b_seen.image, None, "no file of its own");
+            assert_eq!(nuscenes.read_image(&a, a_seen).unwrap(), Some(bytes.clone()));
+            assert_eq!(mcap.read_image(&b, b_seen).unwrap(), Some(bytes));
+            seen += 1;
+        }
+    }
+    assert_eq!(seen, 5);
+    let mut elsewhen = b.keyframes[0].exposures[0].clone();
+    elsewhen.time.0 += 1_000_000_000_000;
+    assert_eq!(mcap.read_image(&b, &elsewhen).unwrap(), None);
+}
+
+#[test]
+fn without_images_there_are_none() {
+    let (_folder, nuscenes, mcap) = logs(Images::None);
+    let (a, b) = (nuscenes.load("tiny").unwrap(), mcap.load("tiny").unwrap());
+    for (a_key, b_key) in a.keyframes.iter().zip(&b.keyframes) {
+        assert_eq!(nuscenes.read_image(&a, &a_key.exposures[0]).unwrap(), None);
+        assert_eq!(mcap.read_image(&b, &b_key.exposures[0]).unwrap(), None);
+    }
 }
 
 fn assert_same_tracks(a: &Scene, b: &Scene) {

@@ -6,8 +6,9 @@
 //! settings: the same bytes on any number of threads and any machine.
 //!
 //! Every way to show a scene takes a [`ShownScene`] and its [`ShownKeyframe`]s, whatever dialect they
-//! were read from. In pictures, what a voxel looks like is [`Painted`]'s affair; where it stands is
-//! that of [`birds_eye`], [`perspective`] and their siblings.
+//! were read from. [`Recording`] lays a scene on a time line for Foxglove and Rerun; [`glb`],
+//! [`ply_cubes`] and [`ply_points`] are for programs that show solids. In pictures, what a voxel looks
+//! like is [`Painted`]'s affair; where it stands is that of [`Plate`]'s methods, one a kind of picture.
 //!
 //! ```
 //! use occlabel_core::{GridSpec, Palette, VoxelGrid};
@@ -25,6 +26,7 @@
 //!     mask_camera: Some(&seen),
 //!     free: 17,
 //!     palette: &palette,
+//!     heading_rad: Some(0.0),
 //! };
 //! let above = birds_eye(&labels, &BirdsEye { map_px: 200 });
 //! let behind = perspective(&labels, &Orbit::behind(&spec, 320, 180));
@@ -32,8 +34,25 @@
 //! # Ok::<(), occlabel_core::Fault>(())
 //! ```
 
+mod mesh;
+mod page;
 mod picture;
+mod recording;
+mod report;
+mod rows;
 mod shown;
+#[cfg(test)]
+mod testing;
 
-pub use picture::{BirdsEye, Orbit, Painted, birds_eye, perspective, png};
+pub use mesh::{glb, ply_cubes, ply_points};
+pub use page::{PageKeyframe, page};
+pub use picture::{
+    Across, Aim, BirdsEye, CameraView, Change, ChangeCounts, Difference, Orbit, Painted, Plate,
+    Strip, birds_eye, perspective, png, thumbnail,
+};
+pub use recording::{EGO, GRID, Recording, ShownBox, WORLD};
+pub use report::{
+    KeyframeAt, QualityTable, Remark, Run, RunClass, RunKeyframe, RunScene, Thumbnail, VoxelTotals,
+    report_page,
+};
 pub use shown::{NO_LABEL, ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};

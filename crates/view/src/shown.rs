@@ -22,6 +22,13 @@ pub struct ShownScene {
     pub tracks: Vec<ShownTrack>,
 }
 
+impl ShownScene {
+    /// Whether a value of `semantics` is a class, so that something stands there.
+    pub fn is_occupied(&self, value: u8) -> bool {
+        value != self.free && value != NO_LABEL
+    }
+}
+
 /// A track of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShownTrack {
@@ -42,6 +49,9 @@ pub struct ShownKeyframe {
     pub time: Option<Timestamp>,
     /// Where its grid stands, if the labels' manifest tells.
     pub world_from_grid: Option<Pose>,
+    /// Where the ego's forward points in the grid frame, from x towards y: 0 in the ego's own frame; if
+    /// anybody tells.
+    pub heading_rad: Option<f64>,
     /// The grid.
     pub spec: GridSpec,
     /// The index of the class where occupied, [`ShownScene::free`] where nothing stands, or

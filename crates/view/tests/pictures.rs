@@ -74,6 +74,7 @@ impl Labels {
             mask_camera: Some(&self.mask_camera),
             free: FREE,
             palette: &self.palette,
+            heading_rad: Some(0.0),
         }
     }
 }

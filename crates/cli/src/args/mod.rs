@@ -6,7 +6,9 @@ mod describe;
 mod evaluate;
 mod label;
 mod log;
+mod picture;
 mod quality;
+mod report;
 mod simulate;
 mod verify;
 mod view;
@@ -21,10 +23,12 @@ pub(crate) use describe::DescribeArgs;
 pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
+pub(crate) use picture::{AcrossArg, PictureArg, PictureArgs};
 pub(crate) use quality::QualityArgs;
+pub(crate) use report::ReportArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
 pub(crate) use verify::VerifyArgs;
-pub(crate) use view::{PictureArg, ViewArgs};
+pub(crate) use view::{MeshArg, ViewArgs};
 
 /// Ground truth for 3D semantic occupancy: dense voxel labels and visibility masks from logged
 /// drives.
@@ -73,6 +77,8 @@ pub(crate) enum Command {
     Describe(DescribeArgs),
     /// Show labels: as a picture, for Foxglove and Rerun, as a mesh, or as a page.
     View(Box<ViewArgs>),
+    /// Show a whole run on one page, what strays from the rest first.
+    Report(ReportArgs),
     /// Make the manifests of a run in shards one, as an undivided run would have written it.
     MergeManifests(MergeArgs),
     /// Check a label tree against its manifest, every bit of it.

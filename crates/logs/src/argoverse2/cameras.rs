@@ -1,6 +1,6 @@
 //! The cameras of a log, and when they were exposed: its images are named by their times.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use occlabel_core::camera::{CameraModel, Intrinsics, Pinhole};
@@ -8,7 +8,7 @@ use occlabel_core::{Camera, Exposure, Fault, Loss, NamedCamera, Pose, Timestamp}
 
 use super::poses::Mountings;
 use super::table::Table;
-use super::times::file_times;
+use super::times::files_by_time;
 use crate::notes::Notes;
 
 /// The lenses of all cameras.
@@ -40,14 +40,14 @@ pub(super) fn read_cameras(
         let both = camera.and_then(|camera| Ok((camera, mountings.pose(&name)?)));
         let Some((camera, ego_from_camera)) = notes.accept(Loss::Camera, both) else { continue };
         let place = format!("{folder}{IMAGES}{name}/");
-        let times = file_times(root, &place, &ENDINGS)?;
-        let expose = |(time_ns, pose): (i64, &Pose)| Exposure {
+        let images = files_by_time(root, &place, &ENDINGS)?;
+        let expose = |(time_ns, file, pose): (i64, String, &Pose)| Exposure {
             camera: cameras.len(),
             time: Timestamp(time_ns),
             world_from_camera: pose * ego_from_camera,
-            image: None,
+            image: Some(file),
         };
-        let posed = posed(times, &place, ego_poses, notes);
+        let posed = posed(images, &place, ego_poses, notes);
         exposures.push(posed.into_iter().map(expose).collect());
         cameras.push(NamedCamera { name, camera });
     }
@@ -58,20 +58,25 @@ pub(super) fn read_cameras(
     Ok((cameras, exposures))
 }
 
-/// The ego's poses at these times; an image without one is noted.
+/// Images with the ego's poses at their times; one without is noted.
 fn posed<'a>(
-    times: BTreeSet<i64>,
+    images: BTreeMap<i64, String>,
     place: &str,
     ego_poses: &'a HashMap<i64, Pose>,
     notes: &mut Notes,
-) -> Vec<(i64, &'a Pose)> {
-    let (with, without): (Vec<i64>, Vec<i64>) =
-        times.into_iter().partition(|time_ns| ego_poses.contains_key(time_ns));
-    for time_ns in without {
-        let expected = "an ego pose of the image's time";
-        notes.warn(Fault::new("ego-pose", place, expected, "none").record(time_ns.to_string()));
+) -> Vec<(i64, String, &'a Pose)> {
+    let mut posed = Vec::new();
+    for (time_ns, file) in images {
+        match ego_poses.get(&time_ns) {
+            Some(pose) => posed.push((time_ns, file, pose)),
+            None => {
+                let fault =
+                    Fault::new("ego-pose", place, "an ego pose of the image's time", "none");
+                notes.warn(fault.record(time_ns.to_string()));
+            }
+        }
     }
-    with.into_iter().filter_map(|time_ns| Some((time_ns, ego_poses.get(&time_ns)?))).collect()
+    posed
 }
 
 /// By name: fx, fy, cx, cy, width, height, pixels.

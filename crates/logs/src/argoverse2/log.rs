@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
-use occlabel_core::{Fault, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_core::{Exposure, Fault, PointCloud, PointLabel, Scene, SweepHeader};
 
 use super::lidars::{Lidars, are_lasers, is_first};
 use super::poses::Mountings;
@@ -12,6 +12,7 @@ use super::scene::{MOUNTINGS, TABLES, build_scene, is_log};
 use super::table::Table;
 use super::{DEPTH, POSES, format_defaults};
 use crate::files::unreadable;
+use crate::image_files::read_image_file;
 use crate::names::{nearest_names, quoted};
 use crate::{ReadOptions, ReaderDefaults, SceneSource, SweepPoints, UnknownLabels};
 
@@ -58,6 +59,10 @@ impl SceneSource for Argoverse2Log {
 
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {
         vec![sweep.file.clone()]
+    }
+
+    fn read_image(&self, _scene: &Scene, exposure: &Exposure) -> Result<Option<Vec<u8>>, Fault> {
+        exposure.image.as_ref().map_or(Ok(None), |file| read_image_file(&self.root, file))
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {

@@ -9,7 +9,7 @@ use super::cameras::{LENSES, read_cameras};
 use super::lidars::Lidars;
 use super::poses::{Mountings, poses};
 use super::table::Table;
-use super::times::file_times;
+use super::times::files_by_time;
 use super::tracks::read_tracks;
 use super::{LIDAR, POSES};
 use crate::ReadOptions;
@@ -56,8 +56,8 @@ pub(super) fn build_scene(
         false => Default::default(),
     };
     let mut sweeps = Vec::new();
-    for time_ns in file_times(root, &format!("{folder}{SWEEPS}"), &[".feather"])? {
-        let header = sweep_header(name, folder, time_ns, &lidars, &ego_poses);
+    for sweep in files_by_time(root, &format!("{folder}{SWEEPS}"), &[".feather"])? {
+        let header = sweep_header(name, sweep, &lidars, &ego_poses);
         sweeps.extend(notes.accept(Loss::Keyframe, header));
     }
     let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
@@ -87,12 +87,10 @@ fn ego_poses(root: &Path, file: &str, notes: &mut Notes) -> Result<HashMap<i64, 
 
 fn sweep_header(
     scene: &str,
-    folder: &str,
-    time_ns: i64,
+    (time_ns, file): (i64, String),
     lidars: &Lidars,
     ego_poses: &HashMap<i64, Pose>,
 ) -> Result<SweepHeader, Fault> {
-    let file = format!("{folder}{SWEEPS}{time_ns}.feather");
     let pose = ego_poses.get(&time_ns);
     let without = || Fault::new("ego-pose", &file, "an ego pose of the sweep's time", "none");
     Ok(SweepHeader {

@@ -1,6 +1,6 @@
 //! Times that files are named by.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -9,27 +9,32 @@ use occlabel_core::Fault;
 
 use crate::files::unreadable;
 
-/// The times of the files in a folder that end so, nanoseconds. None if the folder is absent.
+/// The files in a folder that end so, by their times, nanoseconds; of two of a time, the first by its
+/// name. None if the folder is absent.
 ///
 /// # Errors
 /// If it cannot be listed.
-pub(super) fn file_times(
+pub(super) fn files_by_time(
     root: &Path,
     folder: &str,
     endings: &[&str],
-) -> Result<BTreeSet<i64>, Fault> {
+) -> Result<BTreeMap<i64, String>, Fault> {
     let entries = match fs::read_dir(root.join(folder)) {
         Ok(entries) => entries,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(BTreeSet::new()),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(BTreeMap::new()),
         Err(error) => return Err(unreadable(folder, &error)),
     };
-    let mut times = BTreeSet::new();
+    let mut times: BTreeMap<i64, String> = BTreeMap::new();
     for entry in entries {
         let name = entry.map_err(|error| unreadable(folder, &error))?.file_name();
-        let stem = |ending: &&str| name.to_str()?.strip_suffix(ending);
-        let number = endings.iter().find_map(stem);
+        let Some(name) = name.to_str() else { continue };
+        let number = endings.iter().find_map(|ending| name.strip_suffix(ending));
         let time = number.and_then(|number| number.parse::<i64>().ok());
-        times.extend(time.filter(|time| number == Some(time.to_string().as_str())));
+        if let Some(time) = time.filter(|time| number == Some(time.to_string().as_str())) {
+            let file = format!("{folder}{name}");
+            let first = times.remove(&time).map_or(file.clone(), |other| other.min(file));
+            times.insert(time, first);
+        }
     }
     Ok(times)
 }

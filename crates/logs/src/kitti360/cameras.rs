@@ -44,7 +44,9 @@ pub(super) fn read_cameras(
         let stamps = Stamps::read(root, drive.image_stamps(name));
         let stamps = stamps.map_err(|absent| notes.warn(Fault { rule: "camera-absent", ..absent }));
         let of_camera = (cameras.len(), &ego_from_camera);
-        exposures.push(stamps.map_or(Vec::new(), |stamps| expose(of_camera, poses, &stamps)));
+        let image = |frame| drive.image(name, number < RECTIFIED, frame);
+        let expose = |stamps| expose(of_camera, poses, &stamps, image);
+        exposures.push(stamps.map_or(Vec::new(), expose));
         cameras.push(NamedCamera { name: name.to_owned(), camera });
     }
     (cameras, exposures)
@@ -55,11 +57,13 @@ fn expose(
     (camera, ego_from_camera): (usize, &Pose),
     poses: &Poses,
     stamps: &Stamps,
+    image: impl Fn(usize) -> String,
 ) -> Vec<Exposure> {
     let expose = |frame| {
         let At::Known(world_from_ego) = poses.at(frame, stamps) else { return None };
         let world_from_camera = world_from_ego * ego_from_camera;
-        Some(Exposure { camera, time: stamps.time(frame).ok()?, world_from_camera, image: None })
+        let (time, image) = (stamps.time(frame).ok()?, Some(image(frame)));
+        Some(Exposure { camera, time, world_from_camera, image })
     };
     let mut exposures: Vec<_> = poses.frames().filter_map(expose).collect();
     exposures.sort_by_key(|exposure| exposure.time);

@@ -5,6 +5,7 @@
 //!   data_3d_raw/<drive>/velodyne_points/labels/NNNNNNNNNN.label  optional
 //!   data_poses/<drive>/poses.txt, or cam0_to_world.txt
 //!   data_2d_raw/<drive>/image_NN/timestamps.txt                  optional
+//!   data_2d_raw/<drive>/image_NN/data_rect/NNNNNNNNNN.png        optional; data_rgb of fisheyes
 //!   data_3d_bboxes/train/<drive>.xml                             optional
 //!   data_3d_semantics/train/<drive>/static/FIRST_LAST.ply        optional
 //!   calibration/
@@ -40,6 +41,12 @@ impl Drive<'_> {
     /// The images' times.
     pub(super) fn image_stamps(&self, camera: &str) -> String {
         format!("data_2d_raw/{}/{camera}/timestamps.txt", self.0)
+    }
+
+    /// The image of a frame: rectified, or as a fisheye took it.
+    pub(super) fn image(&self, camera: &str, is_rectified: bool, frame: usize) -> String {
+        let folder = if is_rectified { "data_rect" } else { "data_rgb" };
+        format!("data_2d_raw/{}/{camera}/{folder}/{frame:010}.png", self.0)
     }
 
     /// The points of a scan.

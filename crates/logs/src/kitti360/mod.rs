@@ -21,9 +21,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
 
 use nalgebra::Point3;
-use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_core::{Exposure, Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
 
 use crate::files::read_file;
+use crate::image_files::read_image_file;
 use crate::kitti_labels::{class_name, decode_labels};
 use crate::names::{nearest_names, quoted};
 use crate::points::decode_points;
@@ -168,6 +169,10 @@ impl SceneSource for Kitti360Log {
             LabelSource::Scan(file) | LabelSource::Fused(file) => file,
         });
         [sweep.file.clone()].into_iter().chain(labels).collect()
+    }
+
+    fn read_image(&self, _scene: &Scene, exposure: &Exposure) -> Result<Option<Vec<u8>>, Fault> {
+        exposure.image.as_ref().map_or(Ok(None), |file| read_image_file(&self.root, file))
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {

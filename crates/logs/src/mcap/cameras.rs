@@ -11,6 +11,7 @@ use occlabel_core::{Camera, Exposure, Fault, Loss, McapSettings, NamedCamera, Ti
 
 use super::layout::FrameRoles;
 use super::messages::Optics;
+use super::pictures::name;
 use super::recording::Recording;
 use crate::notes::Notes;
 
@@ -24,8 +25,7 @@ pub(super) fn cameras(
 ) -> (Vec<NamedCamera>, Vec<Vec<Exposure>>) {
     let mut named: BTreeMap<&str, Vec<&Optics>> = BTreeMap::new();
     for (topic, optics) in &recording.optics {
-        let name = settings.cameras.get(topic).unwrap_or(&optics.header.frame);
-        named.entry(name).or_default().push(optics);
+        named.entry(name(settings, topic, optics)).or_default().push(optics);
     }
     if named.is_empty() {
         let expected = "calibrations of a camera";

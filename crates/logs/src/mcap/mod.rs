@@ -21,6 +21,7 @@ mod json;
 mod layout;
 mod messages;
 mod options;
+mod pictures;
 mod points;
 mod protobuf;
 mod record;
@@ -47,7 +48,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use occlabel_core::{Fault, McapSettings, Scene, SweepHeader, reference_lidar};
+use occlabel_core::{Exposure, Fault, McapSettings, Scene, SweepHeader, reference_lidar};
 
 use crate::files::unreadable;
 use crate::names::{nearest_names, quoted};
@@ -147,6 +148,15 @@ impl SceneSource for McapLog {
             Some(known) => survey::survey(&self.root, &known.file, &self.options),
             None => Ok(Vec::new()),
         }
+    }
+
+    fn read_image(&self, scene: &Scene, exposure: &Exposure) -> Result<Option<Vec<u8>>, Fault> {
+        let known = self.scenes.iter().find(|known| known.name == scene.name);
+        let (Some(known), Some(camera)) = (known, scene.cameras.get(exposure.camera)) else {
+            return Ok(None);
+        };
+        let loaded = self.loaded(known).as_ref().map_err(Clone::clone)?;
+        loaded.read_image(&self.root, &camera.name, exposure.time, &self.options)
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {

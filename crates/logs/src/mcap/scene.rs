@@ -1,14 +1,16 @@
 //! A scene from its recording: the reader's conductor.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
-use occlabel_core::{Fault, Scene, SweepHeader};
+use occlabel_core::{Fault, Scene, SweepHeader, Timestamp};
 
 use super::cameras::cameras;
 use super::container::Container;
 use super::dispatch::{Decoded, decode};
 use super::layout::{FrameRoles, lidar_names};
 use super::options::{McapOptions, TimeSource};
+use super::pictures::Pictures;
 use super::recording::{CloudHead, Recording};
 use super::sweep_points::sweep_points;
 use super::sweeps::{source_id, sweep_headers};
@@ -24,6 +26,7 @@ pub(super) struct Loaded {
     scene: Scene,
     recording: Recording,
     roles: FrameRoles,
+    pictures: OnceLock<Result<Pictures, Fault>>,
 }
 
 impl Loaded {
@@ -60,7 +63,7 @@ impl Loaded {
         let (warnings, refused) = notes.finish();
         let name = name.to_owned();
         let scene = Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused };
-        Ok(Self { scene, recording, roles })
+        Ok(Self { scene, recording, roles, pictures: OnceLock::new() })
     }
 
     /// The scene.
@@ -71,6 +74,22 @@ impl Loaded {
     /// How many points its clouds hold.
     pub(super) fn points(&self) -> u64 {
         self.recording.clouds.iter().map(|cloud| cloud.points).sum()
+    }
+
+    /// The bytes of the image that a camera took at a time; `None` if there is none.
+    ///
+    /// # Errors
+    /// If the file, or the image's message, is broken.
+    pub(super) fn read_image(
+        &self,
+        root: &Path,
+        camera: &str,
+        time: Timestamp,
+        options: &McapOptions,
+    ) -> Result<Option<Vec<u8>>, Fault> {
+        let find = || Pictures::find(root, &self.recording, options);
+        let pictures = self.pictures.get_or_init(find).as_ref().map_err(Clone::clone)?;
+        pictures.read((root, &self.recording, options), camera, time)
     }
 
     /// The points of a sweep; `None` if it is none of this file.

@@ -142,10 +142,7 @@ impl SceneSource for NuScenesLog {
     }
 
     fn read_image(&self, _scene: &Scene, exposure: &Exposure) -> Result<Option<Vec<u8>>, Fault> {
-        match &exposure.image {
-            Some(file) => read_image_file(&self.root, file),
-            None => Ok(None),
-        }
+        exposure.image.as_ref().map_or(Ok(None), |file| read_image_file(&self.root, file))
     }
 
     fn load(&self, scene: &str) -> Result<Scene, Fault> {

@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 use occlabel_core::camera::{
     BrownConrady, CameraError, CameraModel, Intrinsics, RollingShutter, ShutterDirection,
 };
-use occlabel_core::{Camera, Exposure, Fault, Keyframe, Loss, NamedCamera, Pose, Timestamp};
+use occlabel_core::{Camera, Exposure, Fault, Keyframe, Loss, NamedCamera, Pose};
 
 use super::segment::{CameraCalibration, Frame, Image};
 use crate::notes::Notes;
@@ -76,16 +76,8 @@ fn exposure(
     });
     let world_from_ego = notes.accept(Loss::Camera, pose)?;
     let world_from_camera = world_from_ego * camera.ego_from_camera;
-    let time = exposure_time(image, frame);
+    let time = image.exposed(frame.time);
     Some(Exposure { camera: index, time, world_from_camera, image: None })
-}
-
-/// When the vehicle stood where the image says; the frame's time, if the image does not say when.
-fn exposure_time(image: &Image, frame: &Frame) -> Timestamp {
-    match image.time_s.is_finite() && image.time_s > 0.0 {
-        true => Timestamp::from_micros((image.time_s * 1e6).round() as i64),
-        false => frame.time,
-    }
 }
 
 fn scene_camera(calibration: &CameraCalibration, first: &Image) -> Result<SceneCamera, Fault> {

@@ -1,17 +1,19 @@
-//! The range images of v2: rows of the components `lidar`, `lidar_pose` and `lidar_segmentation`.
+//! The images of v2: range images as rows of the components `lidar`, `lidar_pose` and
+//! `lidar_segmentation`, JPEGs as rows of `camera_image`.
 
-use occlabel_core::{Fault, SweepHeader};
+use occlabel_core::{Fault, SweepHeader, Timestamp};
 
-use super::components::{Components, LASER, TIME, file};
+use super::components::{CAMERA, Components, IMAGES, LASER, TIME, file, image_rows};
 use super::matrix::Matrix;
 use super::parquet_cursor::Cursors;
 use super::parquet_table::{Row, Table};
 use super::range_image::{LABEL, PIXEL, POSE, RangeImages, Return};
-use super::segment::LidarCalibration;
+use super::segment::{Image, LidarCalibration, camera_number};
 use super::sweep_id::SweepId;
 
 pub(super) const POSES: &str = "lidar_pose";
 const LABELS: &str = "lidar_segmentation";
+const JPEG: &str = "[CameraImageComponent].image";
 
 impl Components {
     /// The files that a sweep needs, its points first.
@@ -49,6 +51,38 @@ impl Components {
         let column = "[LiDARPoseComponent].range_image_return1";
         let poses = poses.map(|row| row.floats(column, POSE)).transpose()?.flatten();
         Ok((RangeImages { returns, poses }, calibration))
+    }
+
+    /// The JPEG that a camera took at a time, if there is one.
+    ///
+    /// # Errors
+    /// If its file is broken.
+    pub(super) fn jpeg(
+        &self,
+        segment: &str,
+        camera: &str,
+        time: Timestamp,
+    ) -> Result<Option<Vec<u8>>, Fault> {
+        let table = match self.table(IMAGES, segment) {
+            Err(absent) if absent.rule == "missing-file" => return Ok(None),
+            table => table?,
+        };
+        let took = |(micros, images): &(&i64, &Vec<Image>)| {
+            let of_frame = Timestamp::from_micros(**micros);
+            images.iter().any(|image| image.camera == camera && image.exposed(of_frame) == time)
+        };
+        let frames = image_rows(&table)?;
+        let (Some((micros, _)), Some(number)) = (frames.iter().find(took), camera_number(camera))
+        else {
+            return Ok(None);
+        };
+        match table.find([(TIME, *micros), (CAMERA, number)])? {
+            Some(row) if table.has(JPEG) => {
+                let bytes = table.bytes_at(&self.cursors, JPEG, row)?;
+                Ok(Some(bytes).filter(|bytes| !bytes.is_empty()))
+            }
+            _ => Ok(None),
+        }
     }
 
     /// A sweep's row of a component, if it has one.

@@ -24,7 +24,8 @@ const LIDAR: &str = "lidar";
 const LIDAR_CALIBRATION: &str = "lidar_calibration";
 pub(super) const TIME: &str = "key.frame_timestamp_micros";
 pub(super) const LASER: &str = "key.laser_name";
-const CAMERA: &str = "key.camera_name";
+pub(super) const CAMERA: &str = "key.camera_name";
+pub(super) const IMAGES: &str = "camera_image";
 
 /// A folder of components.
 #[derive(Debug)]
@@ -93,7 +94,7 @@ impl Components {
         let lidars = self.lidars(name)?;
         let mut seen = self.lidar_rows(name, &mut warnings)?;
         let mut boxes = self.optional("lidar_box", name, &mut warnings, box_rows)?;
-        let mut images = self.optional("camera_image", name, &mut warnings, image_rows)?;
+        let mut images = self.optional(IMAGES, name, &mut warnings, image_rows)?;
         let cameras = self.optional("camera_calibration", name, &mut warnings, cameras)?;
         let poses = self.table(VEHICLE_POSE, name)?;
         let transforms = poses.real_lists("[VehiclePoseComponent].world_from_vehicle.transform")?;
@@ -249,7 +250,7 @@ fn box_rows(table: &Table) -> Result<BTreeMap<i64, Vec<BoxLabel>>, Fault> {
 }
 
 /// The images of each frame.
-fn image_rows(table: &Table) -> Result<BTreeMap<i64, Vec<Image>>, Fault> {
+pub(super) fn image_rows(table: &Table) -> Result<BTreeMap<i64, Vec<Image>>, Fault> {
     let column = |name: &str| format!("[CameraImageComponent].{name}");
     let shutter = |name: &str| table.reals(&column(&format!("rolling_shutter_params.{name}")));
     let poses = table.real_lists(&column("pose.transform"))?;
@@ -266,6 +267,7 @@ fn image_rows(table: &Table) -> Result<BTreeMap<i64, Vec<Image>>, Fault> {
             world_from_ego: poses[i].clone(),
             time_s: times[i],
             readout_s: done[i] - begun[i] - exposed[i],
+            jpeg: None,
         });
     }
     Ok(rows)

@@ -137,7 +137,9 @@ fn image<S: Read + Seek>(
     let world_from_ego = transform(source, image.bytes(3))?;
     let seconds = |number| image.double(number).unwrap_or(f64::NAN);
     let readout_s = seconds(8) - seconds(7) - seconds(6);
-    Ok(Some(Image { place: frame.clone(), camera, world_from_ego, time_s: seconds(5), readout_s }))
+    let (place, time_s) = (frame.clone(), seconds(5));
+    let jpeg = image.bytes(2).filter(|jpeg| jpeg.len() > 0);
+    Ok(Some(Image { place, camera, world_from_ego, time_s, readout_s, jpeg }))
 }
 
 fn box_label<S: Read + Seek>(

@@ -29,7 +29,7 @@ mod tracks;
 use std::path::Path;
 use std::slice;
 
-use occlabel_core::{Fault, Scene, SweepHeader, reference_lidar};
+use occlabel_core::{Exposure, Fault, Scene, SweepHeader, reference_lidar};
 
 use crate::names::{nearest_names, quoted};
 use crate::raw_labels::RawLabels;
@@ -118,6 +118,15 @@ impl SceneSource for WaymoLog {
             #[cfg(feature = "waymo-v2")]
             (Version::V2(log), Some(id)) => log.sweep_files(&id, sweep),
             _ => vec![sweep.file.clone()],
+        }
+    }
+
+    fn read_image(&self, scene: &Scene, exposure: &Exposure) -> Result<Option<Vec<u8>>, Fault> {
+        let Some(camera) = scene.cameras.get(exposure.camera) else { return Ok(None) };
+        match &self.version {
+            Version::V1(log) => log.jpeg(&scene.name, &camera.name, exposure.time),
+            #[cfg(feature = "waymo-v2")]
+            Version::V2(log) => log.jpeg(&scene.name, &camera.name, exposure.time),
         }
     }
 

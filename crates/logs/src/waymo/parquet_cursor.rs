@@ -110,6 +110,17 @@ impl Cursor {
         }
     }
 
+    /// The bytes of each of these rows.
+    pub(super) fn bytes(&mut self, rows: Range<usize>) -> Result<Vec<Vec<Vec<u8>>>> {
+        let Self { column, budget, next } = self;
+        match column {
+            ColumnReader::ByteArrayColumnReader(column) => {
+                cells(column, budget, next, rows, |value| value.data().to_vec())
+            }
+            _ => Err(ParquetError::General("a column of no bytes".into())),
+        }
+    }
+
     /// The text of each of these rows.
     pub(super) fn texts(&mut self, rows: Range<usize>) -> Result<Vec<Vec<String>>> {
         let Self { column, budget, next } = self;

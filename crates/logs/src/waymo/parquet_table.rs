@@ -100,6 +100,16 @@ impl Table {
         self.at(cursors, column, row, Cursor::integers)
     }
 
+    /// The bytes of one row; none if there are none.
+    pub(super) fn bytes_at(
+        &self,
+        cursors: &Cursors,
+        column: &str,
+        row: Row,
+    ) -> Result<Vec<u8>, Fault> {
+        Ok(self.at(cursors, column, row, Cursor::bytes)?.pop().unwrap_or_default())
+    }
+
     /// The first row whose integers in these columns are these.
     pub(super) fn find<const N: usize>(
         &self,

@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use occlabel_core::{Fault, Pose, Timestamp};
 
+use crate::wire::Span;
+
 /// What is known of a segment besides its points.
 #[derive(Debug)]
 pub(super) struct Segment {
@@ -12,6 +14,32 @@ pub(super) struct Segment {
     pub(super) frames: Vec<Result<Frame, Fault>>,
     /// What is odd but can be lived with.
     pub(super) warnings: Vec<Fault>,
+}
+
+impl Frame {
+    /// The image that a camera took at a time.
+    pub(super) fn image(&self, camera: &str, time: Timestamp) -> Option<&Image> {
+        let is_it = |image: &&Image| image.camera == camera && image.exposed(self.time) == time;
+        self.images.iter().find(is_it)
+    }
+}
+
+impl Image {
+    /// When the vehicle stood where the image says; its frame's time, if the image does not say when.
+    pub(super) fn exposed(&self, of_frame: Timestamp) -> Timestamp {
+        match self.time_s.is_finite() && self.time_s > 0.0 {
+            true => Timestamp::from_micros((self.time_s * 1e6).round() as i64),
+            false => of_frame,
+        }
+    }
+}
+
+/// Images are taken while their frame's lidars turn, or shortly before or after.
+const MAX_IMAGE_OFF_S: f64 = 0.25;
+
+/// Whether the frame of a time, microseconds, may hold an image that was taken at another.
+pub(super) fn is_near(micros: i64, time: Timestamp) -> bool {
+    Timestamp::from_micros(micros).seconds_apart(time) <= MAX_IMAGE_OFF_S
 }
 
 /// One lidar of a segment.
@@ -68,6 +96,8 @@ pub(super) struct Image {
     pub(super) time_s: f64,
     /// From the first line to the last; not a number if it is not known.
     pub(super) readout_s: f64,
+    /// Where its JPEG stands in a file of v1.
+    pub(super) jpeg: Option<Span>,
 }
 
 /// One box, in the vehicle's frame.
@@ -145,6 +175,12 @@ impl Lidar {
     pub(super) fn name(self) -> &'static str {
         LIDARS[usize::from(self.0) - 1]
     }
+}
+
+/// The number of a camera.
+#[cfg(feature = "waymo-v2")]
+pub(super) fn camera_number(name: &str) -> Option<i64> {
+    CAMERAS.iter().position(|known| *known == name).map(|place| place as i64 + 1)
 }
 
 /// The camera of a number.

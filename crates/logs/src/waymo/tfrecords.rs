@@ -9,14 +9,14 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
-use occlabel_core::{Fault, SweepHeader};
+use occlabel_core::{Fault, SweepHeader, Timestamp};
 
 use super::calibration::Context;
 use super::compressed::{floats, integers};
 use super::frame::{broken, frame_place, laser, read_frame, read_head, read_lidars};
 use super::matrix::MAX_PIXELS;
 use super::range_image::{LABEL, PIXEL, POSE, RangeImages, Return};
-use super::segment::{Frame, Lidar, LidarCalibration, Place, Segment};
+use super::segment::{Frame, Lidar, LidarCalibration, Place, Segment, is_near};
 use super::sweep_id::SweepId;
 use super::tfrecord::{index_records, read_record};
 use crate::files::open_file;
@@ -134,6 +134,30 @@ impl TfRecords {
     fn frame(&self, at: &FrameAt) -> Result<(Frame, Context), Fault> {
         let mut file = BufReader::new(open_file(&self.root.join(&at.file), &at.file)?);
         read_frame(&mut file, at.record(), (&at.file, at.micros))
+    }
+
+    /// The JPEG that a camera took at a time, if it is in a frame of about that time.
+    ///
+    /// # Errors
+    /// If a frame is broken.
+    pub(super) fn jpeg(
+        &self,
+        segment: &str,
+        camera: &str,
+        time: Timestamp,
+    ) -> Result<Option<Vec<u8>>, Fault> {
+        let frames = self.segments.get(segment).map_or(&[][..], |segment| &segment.frames);
+        for at in frames.iter().filter(|at| is_near(at.micros, time)) {
+            let (frame, _) = self.frame(at)?;
+            let Some(span) = frame.image(camera, time).and_then(|image| image.jpeg) else {
+                continue;
+            };
+            let mut file = open_file(&self.root.join(&at.file), &at.file)?;
+            let data = read_record(&mut file, at.record(), &at.file)?;
+            let of_record = Span { start: span.start - at.start, end: span.end - at.start };
+            return Ok(Some(slice(&data, of_record).to_vec()));
+        }
+        Ok(None)
     }
 
     /// What a lidar saw in a sweep, and how it is calibrated.

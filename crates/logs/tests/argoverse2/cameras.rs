@@ -20,11 +20,11 @@ fn with_lenses(data: &Path) -> tempfile::TempDir {
     root
 }
 
-/// An image of a time; nothing is in it, as images are never opened.
+/// An image of a time; its camera's name is all there is in it, as no label opens it.
 fn put_image(root: &Path, camera: &str, time_ns: i64) {
     let folder = root.join(WHOLE).join("sensors/cameras").join(camera);
     fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join(format!("{time_ns}.jpg")), []).unwrap();
+    fs::write(folder.join(format!("{time_ns}.jpg")), camera).unwrap();
 }
 
 #[test]
@@ -48,12 +48,17 @@ fn images_tell_by_their_names_when_a_camera_was_exposed() {
         put_image(root.path(), camera, SWEEP_NS);
     }
     put_image(root.path(), "ring_rear_left", SWEEP_NS + 1);
-    let scene = Argoverse2Log::open(root.path(), options()).unwrap().load(WHOLE).unwrap();
+    let log = Argoverse2Log::open(root.path(), options()).unwrap();
+    let scene = log.load(WHOLE).unwrap();
     let exposures = &scene.keyframes[0].exposures;
     let seen: Vec<(&str, Timestamp)> =
         exposures.iter().map(|e| (scene.cameras[e.camera].name.as_str(), e.time)).collect();
     let time = Timestamp(SWEEP_NS);
     assert_eq!(seen, [("ring_front_center", time), ("ring_rear_left", time)]);
+    let image = |place: usize| log.read_image(&scene, &exposures[place]);
+    assert_eq!(image(1).unwrap().as_deref(), Some(&b"ring_rear_left"[..]));
+    fs::remove_file(root.path().join(exposures[1].image.as_ref().unwrap())).unwrap();
+    assert_eq!(image(1).unwrap(), None, "it is gone");
     assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
     assert_eq!(scene.warnings[0].rule, "ego-pose");
     let camera = &scene.cameras[exposures[0].camera].camera;

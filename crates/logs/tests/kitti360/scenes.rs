@@ -111,6 +111,22 @@ fn cameras_are_two_pinholes_and_fisheyes_exposed_at_their_images_times() {
 }
 
 #[test]
+fn images_are_the_files_of_their_frames_or_none() {
+    let root = bare();
+    put(&root, &format!("data_2d_raw/{DRIVE}/image_00/timestamps.txt"), stamps());
+    put(&root, &format!("data_2d_raw/{DRIVE}/image_02/timestamps.txt"), stamps());
+    put(&root, &format!("data_2d_raw/{DRIVE}/image_00/data_rect/0000000003.png"), "ahead");
+    put(&root, &format!("data_2d_raw/{DRIVE}/image_02/data_rgb/0000000003.png"), "aside");
+    let (log, scene) = (open(&root), load(&root).unwrap());
+    let images = |keyframe: usize| -> Vec<Option<Vec<u8>>> {
+        let exposures = scene.keyframes[keyframe].exposures.iter();
+        exposures.map(|exposure| log.read_image(&scene, exposure).unwrap()).collect()
+    };
+    assert_eq!(images(3), [Some(b"ahead".to_vec()), Some(b"aside".to_vec())]);
+    assert_eq!(images(4), [None, None]);
+}
+
+#[test]
 fn the_files_of_a_scene_are_listed() {
     let root = bare();
     let (log, scene) = (open(&root), load(&root).unwrap());

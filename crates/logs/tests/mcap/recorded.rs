@@ -56,6 +56,32 @@ fn ros2_cdr_gives_sweeps_poses_and_optics() {
 }
 
 #[test]
+fn ros2_images_are_those_of_the_exposures() {
+    let Some(file) = shared("mcap/kitti0002_ros2.mcap") else { return };
+    let folder = folder_of(&file);
+    let log = open(folder.path(), options(&[], McapSettings::default()));
+    let scene = log.load("kitti0002_ros2").unwrap();
+    let mut images = Vec::new();
+    for exposure in scene.keyframes.iter().flat_map(|keyframe| &keyframe.exposures) {
+        let Some(image) = log.read_image(&scene, exposure).unwrap() else { continue };
+        let size = image_size(&image);
+        assert_eq!(size, (1242, 375));
+        images.push((exposure.time, image));
+    }
+    images.dedup();
+    let times: std::collections::BTreeSet<Timestamp> =
+        images.iter().map(|(time, _)| *time).collect();
+    assert_eq!((images.len(), times.len()), (3, 3), "three images were recorded");
+}
+
+/// Width and height that the head of a PNG tells.
+fn image_size(png: &[u8]) -> (u32, u32) {
+    assert_eq!(&png[1..4], b"PNG");
+    let number = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    (number(16), number(20))
+}
+
+#[test]
 fn foxglove_protobuf_gives_sweeps_and_boxes_with_their_points() {
     let Some(file) = shared("mcap/av2_foxglove.mcap") else { return };
     let folder = folder_of(&file);

@@ -2,11 +2,11 @@
 
 use nalgebra::{Point3, Vector3};
 use occlabel_core::camera::{RollingShutter, ShutterDirection};
-use occlabel_core::{KeyframeSource, Meaning, Scene, Timestamp, TrackId};
+use occlabel_core::{Fault, KeyframeSource, Meaning, Scene, Timestamp, TrackId};
 use occlabel_logs::{Inventory, ReadOptions, SceneSource, WaymoLog};
 
-use crate::log::{MICROS, SEGMENT, fixtures, folder, frames, load, options};
-use crate::message::{edit, without};
+use crate::log::{MICROS, SEGMENT, fixtures, folder, folder_of, frames, load, options};
+use crate::message::{edit, record, without};
 
 /// The fixture as a scene.
 fn drive() -> Scene {
@@ -73,6 +73,47 @@ fn section_2_boxes_stand_in_the_frames_vehicle_and_tracks_go_by_the_bytes_of_the
         scene.sweeps[9].world_from_ego.inverse() * car.world_from_box * Point3::new(2.0, 0.0, 0.0);
     let expected = Point3::new(9.0 + 2.0 * 0.4_f64.cos(), 4.0 + 2.0 * 0.4_f64.sin(), 0.9);
     assert!((front - expected).norm() < 1e-9, "{front}");
+}
+
+/// What the fixture's maker put in place of a JPEG.
+const JPEG: &[u8] = b"\xff\xd8 no picture \xff\xd9";
+
+/// The images of all exposures, in order.
+fn images(log: &WaymoLog) -> Vec<Result<Option<Vec<u8>>, Fault>> {
+    let scene = log.load(SEGMENT).unwrap();
+    let exposures = scene.keyframes.iter().flat_map(|keyframe| &keyframe.exposures);
+    exposures.map(|exposure| log.read_image(&scene, exposure)).collect()
+}
+
+#[test]
+fn images_are_the_bytes_in_their_frames() {
+    let versions = [
+        "v1",
+        #[cfg(feature = "waymo-v2")]
+        "v2",
+    ];
+    for version in versions {
+        let log = WaymoLog::open(&fixtures().join(version), options()).unwrap();
+        let images = images(&log);
+        assert!(images.len() >= 6, "{}", images.len());
+        assert!(images.iter().all(|image| image.as_ref().unwrap().as_deref() == Some(JPEG)));
+    }
+}
+
+#[test]
+fn an_image_that_is_absent_is_none_and_one_in_a_broken_record_is_refused() {
+    let bare = |frame: &Vec<u8>| edit(frame, &[(4, 0)], &mut |image| without(image, 2));
+    let root = folder(&frames().iter().map(bare).collect::<Vec<_>>());
+    let log = WaymoLog::open(root.path(), options()).unwrap();
+    let absent = images(&log).into_iter().filter(|image| *image == Ok(None)).count();
+    assert_eq!(absent, 3, "one of each frame");
+    let mut bytes: Vec<u8> = frames().iter().flat_map(|frame| record(frame)).collect();
+    let at = bytes.windows(JPEG.len()).position(|window| window == JPEG).unwrap();
+    bytes[at + 5] ^= 1;
+    let root = folder_of(&bytes);
+    let log = WaymoLog::open(root.path(), options()).unwrap();
+    let broken: Vec<_> = images(&log).into_iter().filter_map(Result::err).collect();
+    assert!(!broken.is_empty() && broken.iter().all(|fault| fault.rule == "record-checksum"));
 }
 
 #[test]

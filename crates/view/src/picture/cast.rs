@@ -30,19 +30,25 @@ pub(crate) struct Hit {
 pub(crate) fn cast(shape: [usize; 3], sight: &Sight, solid: impl Fn(usize) -> bool) -> Option<Hit> {
     let mut walk = Walk::enter(shape, sight)?;
     loop {
-        let flat = walk.flat();
-        if flat.is_none_or(&solid) {
-            return (flat.is_some() || walk.voxel[2] < 0).then(|| walk.hit(flat));
+        if solid(walk.flat) {
+            return Some(walk.hit(Some(walk.flat)));
         }
-        walk.step();
+        if !walk.step() {
+            let is_floor = walk.axis == 2 && walk.step[2] < 0;
+            return is_floor.then(|| walk.hit(None));
+        }
     }
 }
 
 /// A walk through the grid, voxel by voxel.
 struct Walk {
     shape: [i64; 3],
-    voxel: [i64; 3],
     step: [i64; 3],
+    /// The voxel's place in the flat array, and how that changes by a step.
+    flat: usize,
+    stride: [isize; 3],
+    /// How many voxels are ahead along each axis; -1 outside.
+    ahead: [i64; 3],
     /// At which t the next face of each axis is met, and how much later the one after it.
     next: [f64; 3],
     pace: [f64; 3],
@@ -54,8 +60,8 @@ struct Walk {
 impl Walk {
     /// The walk's first voxel, if the line meets the grid.
     fn enter(shape: [usize; 3], sight: &Sight) -> Option<Self> {
+        let strides = [shape[1] * shape[2], shape[2], 1];
         let shape = shape.map(|n| n as i64);
-        let pace = [0, 1, 2].map(|axis| 1.0 / sight.along[axis].abs());
         let (axis, t) = entry(shape, sight)?;
         let at = sight.origin + sight.along * t;
         let voxel = [0, 1, 2].map(|axis| (at[axis].floor() as i64).clamp(0, shape[axis] - 1));
@@ -65,28 +71,39 @@ impl Walk {
             let way = (face as f64 - sight.origin[axis]) / sight.along[axis];
             if sight.along[axis] == 0.0 { f64::INFINITY } else { way }
         });
-        Some(Self { shape, voxel, step, next, pace, axis, t })
+        let ahead = |a: usize| if step[a] > 0 { shape[a] - 1 - voxel[a] } else { voxel[a] };
+        Some(Self {
+            shape,
+            step,
+            flat: (0..3).map(|a| voxel[a] as usize * strides[a]).sum(),
+            stride: [0, 1, 2].map(|a| step[a] as isize * strides[a] as isize),
+            ahead: [0, 1, 2].map(ahead),
+            next,
+            pace: [0, 1, 2].map(|axis| 1.0 / sight.along[axis].abs()),
+            axis,
+            t,
+        })
     }
 
+    /// Goes on to the next voxel; whether that is in the grid.
     #[inline]
-    fn step(&mut self) {
+    fn step(&mut self) -> bool {
         let [x, y, z] = self.next;
         let axis = if x <= y && x <= z { 0 } else { 1 + usize::from(z < y) };
         (self.axis, self.t) = (axis, self.next[axis]);
-        self.voxel[axis] += self.step[axis];
         self.next[axis] += self.pace[axis];
-    }
-
-    #[inline]
-    fn flat(&self) -> Option<usize> {
-        let ([x, y, z], [nx, ny, nz]) = (self.voxel, self.shape);
-        let inside = x >= 0 && y >= 0 && z >= 0 && x < nx && y < ny && z < nz;
-        inside.then(|| ((x * ny + y) * nz + z) as usize)
+        self.flat = self.flat.wrapping_add_signed(self.stride[axis]);
+        self.ahead[axis] -= 1;
+        self.ahead[axis] >= 0
     }
 
     fn hit(&self, flat: Option<usize>) -> Hit {
         let (axis, normal) = (self.axis, -self.step[self.axis]);
-        Hit { voxel: self.voxel, flat, axis, normal, t: self.t }
+        let voxel = [0, 1, 2].map(|a| match self.step[a] > 0 {
+            true => self.shape[a] - 1 - self.ahead[a],
+            false => self.ahead[a],
+        });
+        Hit { voxel, flat, axis, normal, t: self.t }
     }
 }
 

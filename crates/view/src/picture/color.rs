@@ -9,9 +9,11 @@ pub(crate) const SKY: Rgb<u8> = Rgb([52, 60, 74]);
 /// The floor under the grid, where nothing is known to stand.
 pub(crate) const FLOOR: Rgb<u8> = Rgb([50, 56, 67]);
 /// Columns that no ray reached.
-pub(crate) const UNOBSERVED: Rgb<u8> = Rgb([40, 45, 54]);
+pub(crate) const UNOBSERVED: Rgb<u8> = Rgb([14, 16, 20]);
 /// Columns that rays crossed and nothing stopped.
 pub(crate) const FREE: Rgb<u8> = Rgb([88, 97, 112]);
+/// Where the file itself says that it has no label.
+pub(crate) const UNLABELLED: Rgb<u8> = Rgb([74, 62, 44]);
 /// What no camera sees is mixed with this.
 pub(crate) const HIDDEN: Rgb<u8> = Rgb([54, 60, 71]);
 /// Letters, bars, the ego's mark.

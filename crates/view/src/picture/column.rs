@@ -9,6 +9,8 @@ use crate::picture::painted::Painted;
 pub(crate) enum Column {
     /// No ray reached any of its voxels.
     Unobserved,
+    /// The file has no label of some of its voxels, and nothing is known of the others.
+    Unlabelled,
     /// Nothing stands in it, as far as is known; hidden if no camera sees any of it.
     Free { hidden: bool },
     /// Its topmost occupied voxel; hidden if no camera sees that.
@@ -21,6 +23,16 @@ impl Column {
         match self {
             Self::Occupied { z, .. } => Some(z + 1),
             _ => None,
+        }
+    }
+
+    /// Of several columns drawn as one pixel the one with the greatest rank shows.
+    pub(crate) fn rank(self) -> usize {
+        match self {
+            Self::Unobserved => 0,
+            Self::Unlabelled => 1,
+            Self::Free { .. } => 2,
+            Self::Occupied { z, .. } => 3 + z,
         }
     }
 }
@@ -42,6 +54,7 @@ fn look_down(labels: &Painted, voxels: std::ops::Range<usize>, cameras: bool) ->
         None if voxels.clone().any(|flat| labels.observed(flat)) => {
             Column::Free { hidden: voxels.clone().all(unseen) }
         }
+        None if voxels.clone().any(|flat| labels.unlabelled(flat)) => Column::Unlabelled,
         None => Column::Unobserved,
     }
 }
@@ -51,6 +64,7 @@ mod tests {
     use occlabel_core::{GridSpec, Palette, VoxelGrid};
 
     use super::*;
+    use crate::NO_LABEL;
 
     const FREE: u8 = 9;
 
@@ -67,6 +81,7 @@ mod tests {
             mask_camera: Some(&grid(camera, u8::from(cameras))),
             free: FREE,
             palette: &Palette::of(&["a"]),
+            heading_rad: Some(0.0),
         };
         columns(&labels)[0]
     }
@@ -86,6 +101,14 @@ mod tests {
         assert_eq!(column([0; 4], [0; 4]), Column::Unobserved);
         assert_eq!(column([0, 1, 0, 0], [0, 1, 0, 0]), Column::Free { hidden: false });
         assert_eq!(column([0, 1, 0, 0], [0; 4]), Column::Free { hidden: true });
+    }
+
+    #[test]
+    fn a_column_without_labels_is_not_one_without_rays() {
+        let column = |semantics| look(semantics, [0, 0, 1, 0], [0; 4], false);
+        assert_eq!(column([NO_LABEL; 4]), Column::Unlabelled);
+        assert_eq!(column([FREE, FREE, NO_LABEL, FREE]), Column::Unlabelled);
+        assert_eq!(column([NO_LABEL, NO_LABEL, FREE, FREE]), Column::Free { hidden: false });
     }
 
     #[test]

@@ -43,6 +43,14 @@ pub(crate) fn width_px(text: &str, step_px: f64) -> f64 {
     (steps - GAP).max(0.0) * step_px
 }
 
+/// A text as far as it fits, with dots where it was cut.
+pub(crate) fn fitting(text: &str, step_px: f64, room_px: f64) -> String {
+    let cut = |letters: usize| text.chars().take(letters).collect::<String>() + "..";
+    let fits = |text: &String| width_px(text, step_px) <= room_px;
+    let shorter = (0..text.chars().count()).rev().map(cut);
+    std::iter::once(text.to_owned()).chain(shorter).find(fits).unwrap_or_default()
+}
+
 /// A letter's strokes in steps of the lattice, from its own upper left.
 struct Glyph {
     strokes: Vec<Stroke>,

@@ -1,10 +1,11 @@
 //! Which colour means what.
 
 use image::{Rgb, RgbImage};
+use occlabel_core::Palette;
 
 use crate::picture::canvas::{At, polygon};
-use crate::picture::color::INK;
-use crate::picture::font::{CAPITAL_ROWS, width_px, write};
+use crate::picture::color::{FAINT_INK, INK, mix};
+use crate::picture::font::{CAPITAL_ROWS, fitting as fitting_text, width_px, write};
 use crate::picture::painted::{Painted, hidden};
 
 const STEP_PX: f64 = 1.75;
@@ -21,8 +22,13 @@ pub(crate) struct Legend {
 impl Legend {
     /// The classes that occur in the labels.
     pub(crate) fn of(labels: &Painted) -> Self {
-        let entry = |id: u8| (labels.color(id), labels.palette.label(id));
-        Self { entries: labels.present().into_iter().map(entry).collect() }
+        Self::default().with_classes(labels.palette, &labels.present())
+    }
+
+    /// The legend with these classes.
+    pub(crate) fn with_classes(self, palette: &Palette, classes: &[u8]) -> Self {
+        let with = |legend: Self, &id: &u8| legend.with(Rgb(palette.color(id)), &palette.label(id));
+        classes.iter().fold(self, with)
     }
 
     /// The legend with one entry more.
@@ -49,20 +55,40 @@ impl Legend {
 
     /// Draws it with its upper left corner at a place.
     pub(crate) fn draw(&self, picture: &mut RgbImage, at: At) {
-        for (row, (color, text)) in self.entries.iter().enumerate() {
-            let left = At::new(at.x, at.y + (row as f64 + 0.5) * ROW_PX);
+        self.draw_within(picture, at, f64::INFINITY);
+    }
+
+    /// Draws it in no more than a height: with less between the rows if it needs be, and then with how
+    /// many there are more in place of the last of them.
+    pub(crate) fn draw_within(&self, picture: &mut RgbImage, at: At, height_px: f64) {
+        let row_px = (height_px / self.entries.len().max(1) as f64).clamp(SWATCH_PX + 2.0, ROW_PX);
+        let fitting = (height_px / row_px) as usize;
+        let all = self.entries.len();
+        let told = if fitting < all { fitting.saturating_sub(1) } else { all };
+        let write_row = |picture: &mut RgbImage, row: usize, text: &str| {
+            let middle = at.y + (row as f64 + 0.5) * row_px;
+            let left = At::new(at.x + SWATCH_PX + GAP_PX, middle - CAPITAL_ROWS / 2.0 * STEP_PX);
+            let room_px = f64::from(picture.width()) - left.x - 2.0;
+            write(picture, left, STEP_PX, INK, &fitting_text(text, STEP_PX, room_px));
+            At::new(at.x, middle)
+        };
+        for (row, (color, text)) in self.entries.iter().enumerate().take(told) {
+            let left = write_row(picture, row, text);
             swatch(picture, left, *color);
-            let top = left.y - CAPITAL_ROWS / 2.0 * STEP_PX;
-            write(picture, At::new(at.x + SWATCH_PX + GAP_PX, top), STEP_PX, INK, text);
+        }
+        if told < fitting && told < all {
+            write_row(picture, told, &format!("and {} more", all - told));
         }
     }
 }
 
-/// A square with round corners, its left side's middle at a place.
+/// A square with round corners and a rim that tells it from the ground, its left side's middle at a place.
 fn swatch(picture: &mut RgbImage, left: At, color: Rgb<u8>) {
     const ROUND_PX: f64 = 3.0;
     let (near, far, half) = (left.x + ROUND_PX, left.x + SWATCH_PX - ROUND_PX, SWATCH_PX / 2.0);
     let (top, bottom) = (left.y - half + ROUND_PX, left.y + half - ROUND_PX);
     let corners = [(near, top), (far, top), (far, bottom), (near, bottom)];
-    polygon(picture, &corners.map(|(x, y)| At::new(x, y)), ROUND_PX, color);
+    let corners = corners.map(|(x, y)| At::new(x, y));
+    polygon(picture, &corners, ROUND_PX, mix(color, FAINT_INK, 0.5));
+    polygon(picture, &corners, ROUND_PX - 1.0, color);
 }

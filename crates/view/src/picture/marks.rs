@@ -68,11 +68,15 @@ pub(crate) fn scale_bar(picture: &mut RgbImage, at: At, length_px: f64, length_m
     write(picture, At::new(end.x + 10.0, top), STEP_PX, INK, &metres(length_m));
 }
 
+/// Where the ego's forward is so near to x, x is called forward.
+const AHEAD_RAD: f64 = 0.1;
+
 /// The ways in which x and y grow: up and to the left; the texts' right end at a place.
-pub(crate) fn axes(picture: &mut RgbImage, right: At) {
+pub(crate) fn axes(picture: &mut RgbImage, right: At, heading_rad: Option<f64>) {
+    let is_ahead = heading_rad.is_some_and(|heading_rad| heading_rad.abs() < AHEAD_RAD);
+    let [x_text, y_text] = if is_ahead { ["x forward", "y left"] } else { ["x", "y"] };
     let mut x = right.x;
-    for (way, text) in [(Vector2::new(-1.0, 0.0), "y left"), (Vector2::new(0.0, -1.0), "x forward")]
-    {
+    for (way, text) in [(Vector2::new(-1.0, 0.0), y_text), (Vector2::new(0.0, -1.0), x_text)] {
         x -= width_px(text, STEP_PX);
         let top = right.y - CAPITAL_ROWS / 2.0 * STEP_PX;
         write(picture, At::new(x, top), STEP_PX, FAINT_INK, text);

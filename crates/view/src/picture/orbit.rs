@@ -4,7 +4,8 @@ use nalgebra::{Point3, Vector3};
 use occlabel_core::GridSpec;
 
 use crate::picture::lens::{Lens, TAN_HALF_VIEW};
-use crate::picture::perspective::scene_width_px;
+use crate::picture::painted::Painted;
+use crate::picture::plate::body_width_px;
 
 /// A camera on a sphere around a target, in the grid frame.
 ///
@@ -31,23 +32,20 @@ pub struct Orbit {
 impl Orbit {
     /// From behind and above, a little from the right; the grid fills the picture.
     pub fn behind(spec: &GridSpec, width: u32, height: u32) -> Self {
-        let orbit = Self {
-            target: nalgebra::center(&spec.min_m(), &spec.max_m()),
-            azimuth_rad: 200.0_f64.to_radians(),
-            elevation_rad: 35.0_f64.to_radians(),
-            distance_m: 0.0,
-            width,
-            height,
-        };
-        orbit.fitted(spec)
+        let scene = body_width_px(width);
+        Self { width, ..Aim::default().orbit(spec, (scene, height)) }
     }
 
     /// The same direction, with the target and the distance that bring every corner of the grid into
     /// the picture, with a little room, and as large as can be.
     pub fn fitted(self, spec: &GridSpec) -> Self {
+        self.fitted_to(spec, body_width_px(self.width))
+    }
+
+    /// The same where the scene is drawn `width` pixels wide.
+    fn fitted_to(self, spec: &GridSpec, width: u32) -> Self {
         let [right, up, forward] = self.axes();
-        let scene = f64::from(scene_width_px(self.width));
-        let tan_half_width = TAN_HALF_VIEW * scene / f64::from(self.height.max(1));
+        let tan_half_width = TAN_HALF_VIEW * f64::from(width) / f64::from(self.height.max(1));
         let corners = corners(spec).map(|corner| corner - self.target);
         let side = fit(corners.map(|p| (p.dot(&right), p.dot(&forward))), tan_half_width);
         let rise = fit(corners.map(|p| (p.dot(&up), p.dot(&forward))), TAN_HALF_VIEW);
@@ -67,11 +65,51 @@ impl Orbit {
         [right, right.cross(&forward), forward]
     }
 
-    /// The lens of a picture of this camera, `width` pixels wide.
-    pub(crate) fn lens(&self, width: u32) -> Lens {
+    /// The lens of a picture of this camera, of its own size.
+    pub(crate) fn lens(&self) -> Lens {
         let [right, up, forward] = self.axes();
         let eye = self.target - forward * self.distance_m;
-        Lens::new(eye, [right, up, forward], width, self.height)
+        Lens::new(eye, [right, up, forward], self.width, self.height)
+    }
+}
+
+/// From which side a picture is taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Aim {
+    /// As that of an [`Orbit`].
+    pub azimuth_rad: f64,
+    /// As that of an [`Orbit`].
+    pub elevation_rad: f64,
+    /// How far from the grid's middle; if not told, so that the grid fills the picture.
+    pub distance_m: Option<f64>,
+}
+
+impl Default for Aim {
+    /// From behind and above, a little from the right.
+    fn default() -> Self {
+        let [azimuth_rad, elevation_rad] = [200.0_f64, 35.0].map(f64::to_radians);
+        Self { azimuth_rad, elevation_rad, distance_m: None }
+    }
+}
+
+impl Aim {
+    /// The same, its azimuth counted from the ego's forward.
+    pub(crate) fn at(&self, labels: &Painted, size: (u32, u32)) -> Orbit {
+        let azimuth_rad = self.azimuth_rad + labels.heading_rad.unwrap_or(0.0);
+        Self { azimuth_rad, ..*self }.orbit(labels.spec, size)
+    }
+
+    /// The camera of a picture of this size, without a legend.
+    pub(crate) fn orbit(&self, spec: &GridSpec, (width, height): (u32, u32)) -> Orbit {
+        let orbit = Orbit {
+            target: nalgebra::center(&spec.min_m(), &spec.max_m()),
+            azimuth_rad: self.azimuth_rad,
+            elevation_rad: self.elevation_rad,
+            distance_m: self.distance_m.unwrap_or(0.0),
+            width,
+            height,
+        };
+        if self.distance_m.is_some() { orbit } else { orbit.fitted_to(spec, width) }
     }
 }
 
@@ -106,7 +144,7 @@ mod tests {
     fn the_grid_fills_the_picture() {
         let spec = GridSpec::new([-40.0, -40.0, -1.0], [40.0, 40.0, 5.4], [0.4; 3]).unwrap();
         for (width, height) in [(500, 300), (500, 2000), (300, 200)] {
-            let lens = Orbit::behind(&spec, width, height).lens(width);
+            let lens = Orbit::behind(&spec, width, height).lens();
             let at = corners(&spec).map(|corner| lens.project(&corner).unwrap());
             let low = at.iter().fold(at[0], |low, p| low.inf(p));
             let high = at.iter().fold(at[0], |high, p| high.sup(p));
@@ -127,7 +165,7 @@ mod tests {
             width: 200,
             height: 100,
         };
-        let lens = orbit.lens(200);
+        let lens = orbit.lens();
         let eye = Point3::new(1.0, 2.0 + 10.0 * 0.75_f64.sqrt(), 3.0 + 5.0);
         assert!((lens.eye - eye).norm() < 1e-12);
         let ahead = lens.project(&Point3::new(2.0, 2.0, 3.0)).unwrap();

@@ -24,6 +24,8 @@ pub struct Painted<'a> {
     pub free: u8,
     /// The colours of the classes.
     pub palette: &'a Palette,
+    /// Where the ego's forward points in the grid frame; without it, its mark is left out.
+    pub heading_rad: Option<f64>,
 }
 
 impl<'a> Painted<'a> {
@@ -36,6 +38,7 @@ impl<'a> Painted<'a> {
             mask_camera: keyframe.mask_camera.as_ref(),
             free: scene.free,
             palette: &scene.palette,
+            heading_rad: keyframe.heading_rad,
         }
     }
 
@@ -62,6 +65,21 @@ impl<'a> Painted<'a> {
     pub(crate) fn observed(&self, flat: usize) -> bool {
         let told = self.semantics.values()[flat] != NO_LABEL;
         told && self.mask_lidar.is_none_or(|mask| mask.values()[flat] != 0)
+    }
+
+    /// Whether the file has no label of a place of the flat array.
+    pub(crate) fn unlabelled(&self, flat: usize) -> bool {
+        self.semantics.values()[flat] == NO_LABEL
+    }
+
+    /// Whether the labels tell what was not observed from what is free.
+    pub(crate) fn tells_unobserved(&self) -> bool {
+        self.mask_lidar.is_some()
+    }
+
+    /// What free voxels are called.
+    pub(crate) fn free_name(&self) -> &'static str {
+        if self.tells_unobserved() { "free" } else { "free or unobserved" }
     }
 
     /// Whether no camera sees a place of the flat array, though there are cameras

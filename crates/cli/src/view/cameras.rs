@@ -1,0 +1,134 @@
+//! The cameras of a log at a keyframe.
+
+use std::io::Cursor;
+
+use image::{ImageReader, Limits, RgbImage};
+use occlabel_core::{Exposure, Fault, Keyframe, Pose};
+use occlabel_view::CameraView;
+
+use crate::exit::Stop;
+use crate::logged_scene::LoggedScene;
+
+/// Images that say they are larger are refused before anything is taken for them.
+const MOST_SIDE_PX: u32 = 16_384;
+const MOST_IMAGE_BYTES: u64 = 1 << 30;
+
+/// A camera, where it stood in the keyframe's grid, and what it saw.
+pub(crate) struct Shot<'a> {
+    log: &'a LoggedScene,
+    exposure: &'a Exposure,
+    grid_from_camera: Pose,
+    image: Option<RgbImage>,
+}
+
+impl Shot<'_> {
+    pub(crate) fn view(&self) -> CameraView<'_> {
+        let named = &self.log.scene.cameras[self.exposure.camera];
+        CameraView {
+            name: &named.name,
+            camera: &named.camera,
+            grid_from_camera: self.grid_from_camera,
+            image: self.image.as_ref(),
+        }
+    }
+}
+
+/// The exposures of a keyframe by one camera, or by all: those ahead from left to right, then those
+/// behind from left to right.
+///
+/// # Errors
+/// If the log does not have the keyframe, it has no such camera or none, or an image cannot be read.
+pub(crate) fn shots<'a>(
+    log: &'a LoggedScene,
+    token: &str,
+    camera: Option<&str>,
+) -> Result<Vec<Shot<'a>>, Stop> {
+    let keyframe = log.keyframe(token).map_err(Stop::usage)?;
+    let name = |exposure: &Exposure| log.scene.cameras[exposure.camera].name.as_str();
+    let wanted = |exposure: &&Exposure| camera.is_none_or(|camera| camera == name(exposure));
+    let grid_from_world = log.world_from_grid(keyframe).inverse();
+    let placed = keyframe.exposures.iter().filter(wanted);
+    let mut placed: Vec<_> =
+        placed.map(|exposure| (exposure, grid_from_world * exposure.world_from_camera)).collect();
+    if placed.is_empty() {
+        return Err(Stop::usage(no_camera(log, keyframe, camera)));
+    }
+    placed.sort_by(|(_, a), (_, b)| rank(a).partial_cmp(&rank(b)).expect("finite poses"));
+    let shot = |(exposure, grid_from_camera)| {
+        Ok(Shot { log, exposure, grid_from_camera, image: read(log, exposure)? })
+    };
+    placed.into_iter().map(shot).collect()
+}
+
+/// Behind or not, and how far from the left.
+fn rank(grid_from_camera: &Pose) -> (bool, f64) {
+    let ahead = grid_from_camera.rotation * nalgebra::Vector3::z();
+    let is_behind = ahead.x < -1e-6;
+    (is_behind, -ahead.y)
+}
+
+fn read(log: &LoggedScene, exposure: &Exposure) -> Result<Option<RgbImage>, Stop> {
+    let Some(bytes) = log.source.read_image(&log.scene, exposure)? else { return Ok(None) };
+    let place = exposure.image.as_deref().unwrap_or(&log.scene.name);
+    Ok(Some(decode(&bytes, place)?))
+}
+
+/// A JPEG's or PNG's picture.
+fn decode(bytes: &[u8], place: &str) -> Result<RgbImage, Fault> {
+    let fault = |error: String| {
+        let expected = format!("a JPEG or PNG of at most {MOST_SIDE_PX} x {MOST_SIDE_PX} pixels");
+        Fault::new("image", place, expected, error)
+    };
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MOST_SIDE_PX);
+    limits.max_image_height = Some(MOST_SIDE_PX);
+    limits.max_alloc = Some(MOST_IMAGE_BYTES);
+    let mut reader = ImageReader::new(Cursor::new(bytes));
+    reader.limits(limits);
+    let reader = reader.with_guessed_format().map_err(|error| fault(error.to_string()))?;
+    Ok(reader.decode().map_err(|error| fault(error.to_string()))?.into_rgb8())
+}
+
+fn no_camera(log: &LoggedScene, keyframe: &Keyframe, camera: Option<&str>) -> Fault {
+    let name = |exposure: &Exposure| log.scene.cameras[exposure.camera].name.as_str();
+    let names: Vec<_> = keyframe.exposures.iter().map(name).collect();
+    let place = format!("keyframe {} of the log", keyframe.token);
+    match camera {
+        Some(camera) if !names.is_empty() => {
+            Fault::new("camera", place, names.join(", "), format!("`{camera}`"))
+        }
+        _ => Fault::new("camera", place, "a camera", "none at this keyframe"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_image_that_says_it_is_absurdly_large_is_refused() {
+        let mut bytes = occlabel_view::png(&RgbImage::new(2, 2));
+        bytes[16..20].copy_from_slice(&2_000_000_000_u32.to_be_bytes());
+        let crc = crc_of(&bytes[12..29]);
+        bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+        let fault = decode(&bytes, "a.png").unwrap_err();
+        assert!(fault.to_string().starts_with("a.png: expected a JPEG or PNG of at most 16384"));
+        assert!(decode(&[0xff, 0xd8, 0xff], "b.jpg").is_err() && decode(b"", "c.jpg").is_err());
+    }
+
+    /// That of PNG, bit by bit.
+    fn crc_of(bytes: &[u8]) -> u32 {
+        let step = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
+        !bytes.iter().fold(!0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
+    }
+
+    #[test]
+    fn a_jpeg_is_read() {
+        let mut bytes = Cursor::new(Vec::new());
+        let red = RgbImage::from_pixel(16, 8, image::Rgb([200, 20, 10]));
+        red.write_to(&mut bytes, image::ImageFormat::Jpeg).unwrap();
+        let back = decode(bytes.get_ref(), "a.jpg").unwrap();
+        assert_eq!(back.dimensions(), (16, 8));
+        assert!(back.pixels().all(|p| p.0[0] > 190 && p.0[1] < 35 && p.0[2] < 25));
+    }
+}
