@@ -237,6 +237,17 @@ mod tests {
     }
 
     #[test]
+    fn fault_09_a_pixel_without_a_return_is_no_point_and_labels_stay_with_theirs() {
+        let mut images = images(6);
+        for (j, range_m) in [(0, -1.0), (2, 0.0), (3, f32::NAN)] {
+            images.returns[0].pixels.data[j * PIXEL] = range_m;
+        }
+        let cloud = points(&images, &[0.0], &sweep(), class);
+        assert_eq!(cloud.labels, [class(1), class(4), PointLabel::Unlabelled]);
+        assert!(cloud.positions.iter().all(|p| (p.coords.norm() - 10.0).abs() < 1e-9));
+    }
+
+    #[test]
     fn fault_28_a_point_in_a_no_label_zone_is_unlabelled() {
         let cloud = points(&images(3), &[0.0], &sweep(), class);
         assert_eq!(cloud.labels, [class(0), class(1), PointLabel::Unlabelled]);
