@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn figures_are_read_of_either_way_to_measure() {
         let world = r#"{"trees": [{"tree": "t", "quality": {"keyframes": 5, "all": {
-            "occupied_precision": {"count": 10, "value": 0.98765},
+            "occupied_precision": {"count": 10, "value": 0.98764},
             "occupied_distance_voxels": {"count": 3, "value": null}}}}]}"#;
         let tables = read(world).unwrap();
         assert_eq!(tables[0].rows, [["occupied precision", "0.9876", "10"].map(str::to_owned)]);
