@@ -122,7 +122,7 @@ impl ShownSet {
         Ok(ShownKeyframe {
             token: key.token.clone(),
             time: self.time(key),
-            world_from_grid: pose.map(|pose| self.world_from_grid(pose)),
+            world_from_grid: pose.map(|pose| pose.world_from_grid(self.in_lidar_frame())),
             heading_rad: self.heading_rad(pose),
             evidence: self.evidence(key)?,
             spec: labels.spec,
@@ -138,8 +138,7 @@ impl ShownSet {
         if !self.set.has_evidence(key) {
             return Ok(None);
         }
-        let place = self.set.place(key, "").with_file_name("evidence.npz");
-        let read = read_evidence(&place, self.set.spec())?;
+        let read = read_evidence(&self.set.evidence(key), self.set.spec())?;
         let (hits, crossings, camera_bits) = (read.hits, read.crossings, read.camera_bits);
         Ok(Some(ShownEvidence { hits, crossings, camera_bits }))
     }
@@ -152,21 +151,17 @@ impl ShownSet {
         self.record(&key.scene)?.poses.iter().find(|pose| pose.token == key.token)
     }
 
-    fn world_from_grid(&self, pose: &PoseRecord) -> Pose {
-        let world_from_ego = Pose::from(&pose.world_from_ego);
-        match self.set.frame() {
-            "lidar" => world_from_ego * Pose::from(&pose.ego_from_lidar),
-            _ => world_from_ego,
-        }
+    fn in_lidar_frame(&self) -> bool {
+        self.set.frame() == "lidar"
     }
 
     /// Where the ego's forward points in the grid frame.
     fn heading_rad(&self, pose: Option<&PoseRecord>) -> Option<f64> {
-        if self.set.frame() != "lidar" {
+        if !self.in_lidar_frame() {
             return Some(0.0);
         }
         let forward = Pose::from(&pose?.ego_from_lidar).inverse() * Vector3::x();
-        Some(forward.y.atan2(forward.x))
+        Some(libm::atan2(forward.y, forward.x))
     }
 
     fn unknown(&self, what: &'static str, names: &[&str], found: &str) -> Fault {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use nalgebra::Point3;
-use occlabel_core::{Fault, Pose};
+use occlabel_core::Fault;
 use occlabel_labels::{Manifest, PoseRecord};
 
 /// Where ego and lidar stood at the keyframes of scenes.
@@ -39,21 +39,11 @@ impl ScenePoses {
     pub fn lidar_origins(&self, scene: &str, token: &str) -> Option<Vec<Point3<f64>>> {
         let poses = self.scenes.get(scene)?;
         let here = poses.iter().find(|pose| pose.token == token)?;
-        let grid_from_world = self.world_from_grid(here).inverse();
-        let origin = |pose| grid_from_world * (world_from_lidar(pose) * Point3::origin());
+        let grid_from_world = here.world_from_grid(self.in_lidar_frame).inverse();
+        let origin =
+            |pose: &PoseRecord| grid_from_world * (pose.world_from_grid(true) * Point3::origin());
         Some(poses.iter().map(origin).collect())
     }
-
-    fn world_from_grid(&self, pose: &PoseRecord) -> Pose {
-        match self.in_lidar_frame {
-            true => world_from_lidar(pose),
-            false => (&pose.world_from_ego).into(),
-        }
-    }
-}
-
-fn world_from_lidar(pose: &PoseRecord) -> Pose {
-    Pose::from(&pose.world_from_ego) * Pose::from(&pose.ego_from_lidar)
 }
 
 #[cfg(test)]

@@ -37,6 +37,15 @@ impl PoseRecord {
         }
     }
 
+    /// Where a grid in the lidar's frame, or else in the ego's, stands.
+    pub fn world_from_grid(&self, in_lidar_frame: bool) -> Pose {
+        let world_from_ego = Pose::from(&self.world_from_ego);
+        match in_lidar_frame {
+            true => world_from_ego * Pose::from(&self.ego_from_lidar),
+            false => world_from_ego,
+        }
+    }
+
     /// When it was.
     pub fn time(&self) -> Timestamp {
         Timestamp(self.time_ns)
