@@ -16,6 +16,7 @@ mod lines;
 mod logging;
 mod memory;
 mod parts;
+mod plan;
 mod records;
 mod reports;
 mod resume;

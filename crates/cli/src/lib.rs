@@ -31,6 +31,7 @@ mod label_pairs;
 mod lacks;
 mod logged_scene;
 mod merge_manifests;
+mod plan;
 mod presets;
 mod progress;
 mod quality;
@@ -118,6 +119,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
     match command {
         Command::Demo(args) => demo::run(args, console),
         Command::Label(args) => label::run(args, console),
+        Command::Plan(args) => plan::run(args, console),
         Command::Check(args) => check::run(args, console),
         Command::Quality(args) => quality::run(args, console),
         Command::Evaluate(args) => evaluate::run(args, console),

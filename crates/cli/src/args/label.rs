@@ -1,4 +1,4 @@
-//! The line of `label`.
+//! The lines of `label` and `plan`.
 
 use std::path::PathBuf;
 
@@ -6,18 +6,13 @@ use clap::{Args, ValueEnum};
 
 use super::{ConfigArgs, LogArgs};
 
+/// What is to be labelled, and with what: all that decides the work, and what it costs.
 #[derive(Debug, Args)]
-pub(crate) struct LabelArgs {
+pub(crate) struct WorkArgs {
     #[command(flatten)]
     pub(crate) log: LogArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
-    /// Where the label tree goes.
-    #[arg(long)]
-    pub(crate) output: PathBuf,
-    /// Only every N-th scene, counted from the I-th: a share of a larger run, I from 0.
-    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
-    pub(crate) shard: Option<Shard>,
     /// Write only these keyframes; what is aggregated stays the same.
     #[arg(long, value_delimiter = ',', value_name = "TOKEN,...")]
     pub(crate) keyframes: Vec<String>,
@@ -37,6 +32,24 @@ pub(crate) struct LabelArgs {
     /// Memory to stay under, as 8GiB or 500MB.
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
     pub(crate) memory: Option<u64>,
+    /// What to do with a record, sweep, keyframe or scene that cannot be used.
+    #[arg(long, value_enum, default_value_t = OnError::Fail)]
+    pub(crate) on_error: OnError,
+    /// Label although listed sweep files are absent.
+    #[arg(long)]
+    pub(crate) allow_missing_sweeps: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LabelArgs {
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+    /// Where the label tree goes.
+    #[arg(long)]
+    pub(crate) output: PathBuf,
+    /// Only every N-th scene, counted from the I-th: a share of a larger run, I from 0.
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    pub(crate) shard: Option<Shard>,
     /// What to do with the keyframes that an earlier run finished.
     #[arg(long, value_enum, default_value_t = ResumeArg::IfSame)]
     pub(crate) resume: ResumeArg,
@@ -44,18 +57,18 @@ pub(crate) struct LabelArgs {
     /// `verify --redo-list` writes them.
     #[arg(long, value_name = "FILE")]
     pub(crate) redo: Option<PathBuf>,
-    /// What to do with a record, sweep, keyframe or scene that cannot be used.
-    #[arg(long, value_enum, default_value_t = OnError::Fail)]
-    pub(crate) on_error: OnError,
-    /// Label although listed sweep files are absent.
-    #[arg(long)]
-    pub(crate) allow_missing_sweeps: bool,
     /// Show scenes, keyframes, rays and bytes; write nothing.
     #[arg(long)]
     pub(crate) dry_run: bool,
     /// How progress is shown on stderr.
     #[arg(long, value_enum, default_value_t = ProgressArg::Auto)]
     pub(crate) progress: ProgressArg,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -21,7 +21,7 @@ pub(crate) use compare::CompareArgs;
 pub(crate) use convert::ConvertArgs;
 pub(crate) use describe::DescribeArgs;
 pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
-pub(crate) use label::{LabelArgs, OnError, ProgressArg, ResumeArg};
+pub(crate) use label::{LabelArgs, OnError, PlanArgs, ProgressArg, ResumeArg, Shard, WorkArgs};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use picture::{AcrossArg, PictureArg, PictureArgs};
 pub(crate) use quality::QualityArgs;
@@ -63,6 +63,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Label a log: the main job.
     Label(Box<LabelArgs>),
+    /// List a log's scenes with what labelling each will cost, as JSON lines; nothing is written.
+    Plan(Box<PlanArgs>),
     /// Find every fault of a log at once; nothing is written.
     Check(Box<CheckArgs>),
     /// Measure how right labels are.

@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 
 use occlabel_core::Fault;
 
+use crate::args::Shard;
 use crate::console::Console;
 use crate::exit::Stop;
 use crate::interrupt::Interrupt;
-use crate::label::Job;
 use crate::label::findings::Findings;
+use crate::label::job::Job;
 use crate::label::planned_scene::{PlannedScene, Refused};
 use crate::label::scene_run::Finished;
 
@@ -29,12 +30,13 @@ impl Plan {
     /// Looks at every wanted scene, until it is interrupted.
     pub(crate) fn make(
         job: &Job,
+        shard: Option<Shard>,
         findings: &mut Findings,
         interrupt: &Interrupt,
     ) -> Result<Self, Stop> {
         let mut tokens: BTreeSet<&str> = job.args.keyframes.iter().map(String::as_str).collect();
         let (mut scenes, mut unfit) = (Vec::new(), Unfit::default());
-        for name in wanted(job) {
+        for name in wanted(job, shard) {
             if interrupt.is_raised() {
                 return Ok(Self { scenes });
             }
@@ -112,9 +114,9 @@ impl Unfit {
 }
 
 /// The scenes of this run's shard.
-fn wanted(job: &Job) -> Vec<String> {
+fn wanted(job: &Job, shard: Option<Shard>) -> Vec<String> {
     let names = job.opened.source.scene_names();
-    match job.args.shard {
+    match shard {
         None => names,
         Some(shard) => names.into_iter().skip(shard.index).step_by(shard.count).collect(),
     }

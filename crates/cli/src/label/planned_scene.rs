@@ -10,8 +10,8 @@ use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::MemoryModel;
 use occlabel_simulate::World;
 
-use crate::label::Job;
 use crate::label::findings::Findings;
+use crate::label::job::Job;
 use crate::label::scene_run::Finished;
 use crate::lacks::lacks;
 
@@ -33,10 +33,10 @@ pub(crate) struct PlannedScene {
     /// How many keyframes at once, and in how many shards of rays each.
     pub(crate) at_once: (usize, usize),
     /// An upper estimate of the memory that takes.
-    memory_bytes: u64,
-    sweeps: usize,
+    pub(crate) memory_bytes: u64,
+    pub(crate) sweeps: usize,
     /// An upper estimate of its points.
-    points: u64,
+    pub(crate) points: u64,
 }
 
 /// Why a scene cannot be labelled.
@@ -93,16 +93,29 @@ impl PlannedScene {
         self.wanted.iter().all(|token| finished.contains_key(&(self.name.clone(), token.clone())))
     }
 
+    /// How many rays will be cast at most: every point, for every keyframe.
+    pub(crate) fn rays(&self) -> u64 {
+        self.points * self.wanted.len() as u64
+    }
+
+    /// The bytes of its sweeps' files.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.files.iter().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// What labelling it is expected to cost.
+    pub(crate) fn cpu_seconds(&self) -> f64 {
+        self.rays() as f64 * CPU_SECONDS_A_RAY
+    }
+
     /// One line for `--dry-run`.
     pub(crate) fn line(&self) -> String {
-        let bytes: u64 = self.files.iter().map(|(_, bytes)| bytes).sum();
-        let (keyframes, points) = (self.wanted.len(), self.points);
-        let rays = points * keyframes as u64;
-        let seconds = rays as f64 * CPU_SECONDS_A_RAY;
+        let (keyframes, points, sweeps) = (self.wanted.len(), self.points, self.sweeps);
+        let (name, bytes, rays) = (&self.name, self.bytes(), self.rays());
+        let (memory_bytes, seconds) = (self.memory_bytes, self.cpu_seconds());
         format!(
-            "{}: {keyframes} keyframes, {} sweeps, {bytes} bytes; at most {points} points, {rays} rays, \
-             {} bytes of memory; expected time {seconds:.1} CPU-seconds",
-            self.name, self.sweeps, self.memory_bytes,
+            "{name}: {keyframes} keyframes, {sweeps} sweeps, {bytes} bytes; at most {points} points, \
+             {rays} rays, {memory_bytes} bytes of memory; expected time {seconds:.1} CPU-seconds"
         )
     }
 }

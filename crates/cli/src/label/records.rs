@@ -12,7 +12,7 @@ use occlabel_labels::{
 use occlabel_pipeline::Config;
 use serde_json::Value;
 
-use crate::label::Job;
+use crate::label::job::Job;
 use crate::label::plan::Plan;
 use crate::label::planned_scene::PlannedScene;
 use crate::label::targets::{LabelledGrid, Target};

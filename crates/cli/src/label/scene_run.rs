@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene, Timestamp};
-use occlabel_labels::{FileRecord, Journal, JournalEntry, TreePath, WriterLock};
+use occlabel_labels::{FileRecord, Journal, JournalEntry, LabelTree, TreePath, WriterLock};
 use occlabel_pipeline::{LabelOptions, LabelledKeyframe, Lenses, aggregate_scene, label_keyframe};
 use serde_json::Value;
 
@@ -13,17 +13,19 @@ use crate::exit::Stop;
 use crate::interrupt::Interrupt;
 use crate::label::clock::{StageClock, StageMeter};
 use crate::label::findings::Findings;
+use crate::label::job::Job;
 use crate::label::planned_scene::PlannedScene;
 use crate::label::sweep_reader::{Book, SweepReader};
 use crate::label::tally::{EmptyBox, Summary, Tally, VoxelCounts};
 use crate::label::target_dialect::Source;
 use crate::label::targets::{KeyframeFiles, LabelledGrid};
-use crate::label::{Job, workers};
+use crate::label::workers;
 use crate::progress::Progress;
 
 /// A scene to label.
 pub(crate) struct SceneRun<'a> {
     pub(crate) job: &'a Job<'a>,
+    pub(crate) tree: &'a LabelTree,
     pub(crate) planned: &'a PlannedScene,
     pub(crate) progress: &'a Progress<'a>,
     pub(crate) interrupt: &'a Interrupt,
@@ -72,7 +74,7 @@ impl SceneRun<'_> {
     ) -> Result<SceneDone, Stop> {
         let started = Instant::now();
         let mut done = self.finished_before(finished, findings);
-        let _lock = WriterLock::of_scene(&self.job.tree, &self.planned.name)?;
+        let _lock = WriterLock::of_scene(self.tree, &self.planned.name)?;
         let scene = self.job.opened.source.load(&self.planned.name)?;
         let todo = self.keyframes_to_label(&scene, &done);
         self.progress.scene(&scene.name, todo.len(), done.tally.kept);
@@ -250,7 +252,7 @@ impl SceneRun<'_> {
     fn finish(&self, keyframe: &Keyframe, made: MadeKeyframe, bench: &Bench) -> Result<(), Fault> {
         let (scene, token) = (&self.planned.name, &keyframe.token);
         let write = |(path, bytes): (TreePath, Vec<u8>)| {
-            Ok(self.job.tree.write(&path, &bytes)?.of_keyframe(scene, token))
+            Ok(self.tree.write(&path, &bytes)?.of_keyframe(scene, token))
         };
         let files = made.files?.into_iter().map(write).collect::<Result<_, Fault>>()?;
         let entry = JournalEntry {

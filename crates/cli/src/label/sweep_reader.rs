@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use occlabel_core::{Fault, Keyframe, PointCloud, PointLabel, Scene, SweepHeader, is_finite};
 
 use crate::interrupt::Interrupt;
-use crate::label::Job;
 use crate::label::findings::Findings;
+use crate::label::job::Job;
 use crate::label::tally::SweepCounts;
 
 /// Reads sweeps, from any thread.
