@@ -10,19 +10,6 @@ import pytest
 from occlabel_ray.label import Ending, Line, label
 
 
-@pytest.fixture
-def program(tmp_path):
-    """A script in the place of the program: it runs the text of its flag `--do`."""
-
-    def write(text):
-        path = tmp_path / "occlabel"
-        path.write_text(f"#!/bin/sh\n{text}\n")
-        path.chmod(0o755)
-        return str(path)
-
-    return write
-
-
 @pytest.mark.parametrize(
     ("does", "ending"),
     [
