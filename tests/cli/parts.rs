@@ -136,8 +136,30 @@ fn a_merge_that_was_interrupted_is_ended_by_the_same_command() {
     assert!(files_under(&shared) == before);
     let other =
         String::from_utf8(second).expect("text").replace("\"scene-0002\"", "\"scene-0009\"");
+    let other = other.replacen("\"version\": \"", "\"version\": \"9", 1);
     fs::write(shared.join("manifest.1-of-2.json"), other).expect("written");
-    merge(&shared).exits(1).tells(&["manifest.1-of-2.json", "other labels"]);
+    merge(&shared).exits(1).tells(&["shards of one run", "another program"]);
+}
+
+#[test]
+fn shards_that_end_late_are_merged_in_later() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(3));
+    let sets = ["--also", "1.6,occ3d-nuscenes"];
+    let (whole, shared) = (log.beside("whole"), log.beside("shared"));
+    let label = |output| Label::new(&log.root(), output).small().with(&sets);
+    label(&whole).run().exits(0);
+    let without = || occlabel(&["merge-manifests", text(&shared), "--without-missing"]);
+    for (shard, code) in [("1/3", 3), ("0/3", 3), ("2/3", 0)] {
+        label(&shared).with(&["--shard", shard]).run().exits(0);
+        without().exits(code);
+    }
+    assert_eq!(tree_hash(&whole), tree_hash(&shared));
+    let [theirs, ours] = [&whole, &shared].map(|tree| report(tree)["total"]["voxels"].clone());
+    assert_eq!(theirs, ours);
+    assert_eq!(leftovers(&shared), [""; 0]);
+    merge(&shared).exits(0);
+    let names = |tree: &std::path::Path| files_under(tree).into_keys().collect::<Vec<_>>();
+    assert_eq!(names(&whole), names(&shared));
 }
 
 fn merge(tree: &std::path::Path) -> Ended {

@@ -32,8 +32,20 @@ pub fn pretty(value: &impl Serialize) -> Vec<u8> {
     json
 }
 
+/// A JSON file that has to be there, read back.
+///
+/// # Errors
+/// If it is absent, cannot be read, or is no such JSON.
+pub fn read_file<T: DeserializeOwned>(path: &Path) -> Result<T, Fault> {
+    let absent = || read_fault(path, &ErrorKind::NotFound.into());
+    read(path)?.ok_or_else(absent)
+}
+
 /// A JSON file read back; `None` if there is none.
-pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, Fault> {
+///
+/// # Errors
+/// If it cannot be read, or is no such JSON.
+pub fn read<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, Fault> {
     let Some(bytes) = read_bounded(path)? else { return Ok(None) };
     serde_json::from_slice(&bytes).map(Some).map_err(|error| {
         Fault::new(

@@ -60,7 +60,7 @@ pub use atomic::{create_dir, remove_file, write_file, write_pieces};
 pub use files::{FileRecord, hash_files};
 pub use inputs::{InputHashes, InputMark, InputRecord};
 pub use journal::{Journal, JournalEntry};
-pub use json::{json_hash, pretty as pretty_json};
+pub use json::{json_hash, pretty as pretty_json, read as read_json, read_file as read_json_file};
 pub use lock::WriterLock;
 pub use manifest::{
     ClassRecord, GridRecord, Manifest, Program, SceneRecord, TaxonomyRecord, TrackRecord,

@@ -31,6 +31,16 @@ impl RunFiles {
         &self.tree
     }
 
+    /// Of which shard they are, as `17-of-60`; none of a run that is undivided.
+    pub fn shard_name(&self) -> Option<String> {
+        self.shard.map(|(index, count)| format!("{index}-of-{count}"))
+    }
+
+    /// How many shards there are.
+    pub(crate) fn count(&self) -> usize {
+        self.shard.map_or(1, |(_, count)| count)
+    }
+
     /// Whether it is a part of a larger run.
     pub(crate) fn is_of_shard(&self) -> bool {
         self.shard.is_some()
@@ -73,9 +83,9 @@ impl RunFiles {
     }
 
     pub(crate) fn name(&self, stem: &str, ending: &str) -> String {
-        match self.shard {
+        match self.shard_name() {
             None => format!("{stem}.{ending}"),
-            Some((index, count)) => format!("{stem}.{index}-of-{count}.{ending}"),
+            Some(shard) => format!("{stem}.{shard}.{ending}"),
         }
     }
 }

@@ -6,34 +6,30 @@ use occlabel_core::Fault;
 
 use crate::{LabelTree, Manifest, RunFiles, disk};
 
-/// The shards of a run that wrote a tree, all of which have ended.
-#[derive(Clone, Debug)]
+/// The shards of a run that wrote a tree; none of a run that was undivided.
+#[derive(Clone, Debug, Default)]
 pub struct Shards {
-    /// Each shard's own files, in order.
-    pub files: Vec<RunFiles>,
-    /// What each says of its scenes.
-    pub manifests: Vec<Manifest>,
+    /// Those that have ended: each one's own files and what it says of its scenes, in order.
+    pub ended: Vec<(RunFiles, Manifest)>,
+    /// The others, of which there is no manifest: none yet, or no longer.
+    pub absent: Vec<RunFiles>,
 }
 
 impl Shards {
-    /// The shards whose manifests `manifest.I-of-N.json` stand in a tree; `None` if none do.
+    /// The shards whose manifests `manifest.I-of-N.json` stand in a tree.
     ///
     /// # Errors
-    /// If the manifest of one is absent, or cannot be read.
-    pub fn find(root: &Path) -> Result<Option<Self>, Fault> {
-        let Some(count) = shard_count(root) else { return Ok(None) };
-        let tree = LabelTree::new(root);
-        let files: Vec<_> =
-            (0..count).map(|index| RunFiles::shard(tree.clone(), index, count)).collect();
-        let manifests = files.iter().map(|files| {
-            let path = files.manifest();
-            Manifest::load(&path)?.ok_or_else(|| {
-                let expected = format!("the manifests of all {count} shards");
-                Fault::new("shards", path.display().to_string(), expected, "no such file")
-            })
-        });
-        let manifests = manifests.collect::<Result<Vec<_>, Fault>>()?;
-        Ok(Some(Self { files, manifests }))
+    /// If one cannot be read.
+    pub fn find(root: &Path) -> Result<Self, Fault> {
+        let (tree, mut shards) = (LabelTree::new(root), Self::default());
+        let count = shard_count(root).unwrap_or(0);
+        for files in (0..count).map(|index| RunFiles::shard(tree.clone(), index, count)) {
+            match Manifest::load(&files.manifest())? {
+                Some(manifest) => shards.ended.push((files, manifest)),
+                None => shards.absent.push(files),
+            }
+        }
+        Ok(shards)
     }
 }
 
@@ -86,10 +82,13 @@ impl Manifest {
 /// # Errors
 /// If one cannot be read or is absent, or they are of different runs.
 pub(crate) fn load(root: &Path) -> Result<Option<Manifest>, Fault> {
-    match Shards::find(root)? {
-        None => Ok(None),
-        Some(shards) => Manifest::merge_all(shards.manifests),
+    let shards = Shards::find(root)?;
+    if let Some(files) = shards.absent.first() {
+        let expected = format!("the manifests of all {} shards", files.count());
+        let place = files.manifest().display().to_string();
+        return Err(Fault::new("shards", place, expected, "no such file"));
     }
+    Manifest::merge_all(shards.ended.into_iter().map(|(_, manifest)| manifest))
 }
 
 /// How many shards there are, by the name of any shard's manifest.

@@ -112,9 +112,12 @@ pub(crate) struct DemoArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct MergeArgs {
-    /// The label tree, all of whose shards have ended.
+    /// The label tree.
     #[arg(value_name = "DIR")]
     pub(crate) labels: PathBuf,
+    /// Do with the shards that have ended; the others can be merged in later.
+    #[arg(long)]
+    pub(crate) without_missing: bool,
 }
 
 #[derive(Debug, Args)]

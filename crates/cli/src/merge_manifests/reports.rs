@@ -1,0 +1,111 @@
+//! The reports of shards as one: counts are summed, scenes and findings joined, the rest kept by shard.
+
+use std::path::Path;
+
+use occlabel_core::Fault;
+use occlabel_labels::{RunFiles, read_json, read_json_file};
+use serde_json::{Value, json};
+
+use crate::exit::Outcome;
+
+/// What is kept of each shard's report as it is.
+const OF_SHARD: [&str; 6] =
+    ["outcome", "seconds", "cpu_seconds", "peak_memory_bytes", "threads", "host"];
+
+/// `report.json` of a run in shards, as far as they were merged.
+pub(super) struct MergedReport(Value);
+
+impl MergedReport {
+    /// The report of an earlier merge, or an empty one.
+    pub(super) fn load(path: &Path) -> Result<Self, Fault> {
+        let mut report: Value = read_json(path)?.unwrap_or_else(
+            || json!({ "version": 1, "outcome": "complete", "scenes": {}, "total": {} }),
+        );
+        for key in ["warnings", "skipped_or_degraded", "shards"] {
+            if !report[key].is_array() {
+                report[key] = json!([]);
+            }
+        }
+        Ok(Self(report))
+    }
+
+    /// Whether a shard was merged.
+    pub(super) fn holds(&self, shard: &RunFiles) -> bool {
+        let name = shard.shard_name();
+        self.list("shards").iter().any(|merged| merged["shard"].as_str() == name.as_deref())
+    }
+
+    /// Merges a shard's, unless it was.
+    pub(super) fn add(&mut self, shard: &RunFiles) -> Result<(), Fault> {
+        if self.holds(shard) {
+            return Ok(());
+        }
+        let report: Value = read_json_file(&shard.report())?;
+        for key in ["scenes", "total"] {
+            add(&mut self.0[key], &report[key]);
+        }
+        if report["outcome"] != Outcome::Complete.name() {
+            self.0["outcome"] = json!(Outcome::Degraded.name());
+        }
+        for key in ["warnings", "skipped_or_degraded"] {
+            let findings = report[key].as_array().cloned().unwrap_or_default();
+            self.extend(key, findings);
+        }
+        let kept = OF_SHARD.iter().map(|key| ((*key).to_owned(), report[*key].clone()));
+        let mut kept = Value::Object(kept.collect());
+        kept["shard"] = json!(shard.shard_name());
+        self.extend("shards", [kept]);
+        Ok(())
+    }
+
+    /// How the shards that were merged ended.
+    pub(super) fn outcome(&self) -> Outcome {
+        let is_complete = self.0["outcome"] == Outcome::Complete.name();
+        if is_complete { Outcome::Complete } else { Outcome::Degraded }
+    }
+
+    pub(super) fn json(&self) -> &Value {
+        &self.0
+    }
+
+    fn list(&self, key: &str) -> &[Value] {
+        self.0[key].as_array().map_or(&[], Vec::as_slice)
+    }
+
+    fn extend(&mut self, key: &str, more: impl IntoIterator<Item = Value>) {
+        if let Some(list) = self.0[key].as_array_mut() {
+            list.extend(more);
+        }
+    }
+}
+
+/// Adds numbers to numbers, key by key; peaks become the highest; what is there once stays as it is.
+fn add(sum: &mut Value, more: &Value) {
+    match (sum, more) {
+        (Value::Object(sum), Value::Object(more)) => {
+            for (key, value) in more {
+                match sum.get_mut(key) {
+                    Some(there) if key.starts_with("peak_") => raise(there, value),
+                    Some(there) => add(there, value),
+                    None => drop(sum.insert(key.clone(), value.clone())),
+                }
+            }
+        }
+        (sum, Value::Number(more)) if sum.is_u64() && more.is_u64() => {
+            *sum = json!(sum.as_u64().unwrap_or(0) + more.as_u64().unwrap_or(0));
+        }
+        (sum, Value::Number(more)) if sum.is_number() => {
+            *sum = json!(sum.as_f64().unwrap_or(0.0) + more.as_f64().unwrap_or(0.0));
+        }
+        _ => {}
+    }
+}
+
+/// The higher of each number.
+fn raise(peaks: &mut Value, others: &Value) {
+    for (key, other) in others.as_object().into_iter().flatten() {
+        if peaks[key].as_u64() < other.as_u64() {
+            peaks[key] = other.clone();
+        }
+    }
+}
