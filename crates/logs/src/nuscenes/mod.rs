@@ -170,6 +170,7 @@ impl SceneSource for NuScenesLog {
 
 fn defaults(folder: &Path) -> Result<ReaderDefaults, Fault> {
     let sensors: HashMap<Token, table::Row<rows::Sensor>> = table::read_keyed(folder, |_| true)?;
+    #[expect(clippy::disallowed_methods, reason = "of their names the least is taken")]
     let lidars = sensors.values().filter(|sensor| sensor.modality == "lidar");
     let names: Vec<String> = lidars.map(|lidar| lidar.channel.clone()).collect();
     let none = || Fault::new("reference-lidar", "sensor.json", "a lidar", "none");
