@@ -230,7 +230,7 @@ fn nothing_is_written_but_what_a_line_names() {
     let lines: [&[&str]; 9] = [
         &["check"],
         &["inspect"],
-        &["plan"],
+        &["label", "--output", text(&out), "--dry-run"],
         &["label", "--output", text(&out), "--evidence", "--also", "0.8"],
         &["label", "--output", text(&out), "--evidence", "--also", "0.8", "--resume", "never"],
         &["verify", text(&out)],

@@ -11,6 +11,8 @@ use crate::support::{Ended, SMALL, leftovers, manifest, nano_spec, occlabel, tex
 
 /// A street with a car that drives by, seen by a lidar and a camera.
 const WORLD: &str = include_str!("../fixtures/mcap_world.toml");
+/// The log's own keyframes, which some presets pass over.
+const KEYFRAMES: [&str; 4] = ["--set", "keyframes.source=annotated", "--set", "keyframes.stride=1"];
 /// All files that a line can write.
 const SETS: [&str; 3] = ["--evidence", "--also", "1.6"];
 
@@ -26,7 +28,8 @@ pub(crate) struct Case {
 impl Case {
     /// Three scenes in nuScenes' layout.
     pub(crate) fn scenes(preset: &str) -> Self {
-        let case = Self::new("nuscenes", preset, "occ3d-nuscenes");
+        let mut case = Self::new("nuscenes", preset, "occ3d-nuscenes");
+        case.args.extend(KEYFRAMES.map(str::to_owned));
         let spec = LogSpec { sweeps_per_keyframe: 2, ..nano_spec().with_scenes(3) };
         write_log(&case.log(), &spec).expect("a log");
         case
