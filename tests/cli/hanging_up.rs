@@ -1,5 +1,6 @@
 //! Signals, and readers that go away.
 
+use std::fs;
 use std::io::pipe;
 use std::process::{Command, Stdio};
 
@@ -38,6 +39,26 @@ fn a_second_signal_ends_at_once_and_the_same_command_goes_on() {
     let ended = Ended::of(child.wait_with_output().expect("an end")).exits(130);
     ended.tells_nothing_of("goes on");
     label.run().exits(0);
+}
+
+#[test]
+fn an_interrupted_log_is_no_log_and_the_same_command_makes_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = folder.path().join("log");
+    let line = ["simulate", "--world", "street", "--format", "nuscenes", "--output", text(&output)];
+    let mut child = command(&line).stdout(Stdio::null()).spawn().expect("started");
+    while !output.join(".part").exists() && child.try_wait().expect("a state").is_none() {
+        std::thread::yield_now();
+    }
+    signal(&child, "-INT");
+    if child.wait().expect("an end").success() {
+        return eprintln!("skipped: the log was whole before the signal came");
+    }
+    let names =
+        fs::read_dir(&output).expect("a folder").map(|entry| entry.expect("one").file_name());
+    assert_eq!(names.collect::<Vec<_>>(), [".part"]);
+    command(&line).output().expect("an end");
+    assert!(output.join("v1.0-sim").is_dir() && !output.join(".part").exists());
 }
 
 #[test]
