@@ -10,15 +10,14 @@ use crate::labelled::times;
 use crate::support::{Ended, Label, TestLog, leftovers, nano_spec, tree_hash};
 
 /// A log of 8 keyframes, to be labelled by one thread in the whole grid.
-fn long_run() -> (TestLog, Label) {
+pub(crate) fn long_run() -> (TestLog, Label) {
     let log = TestLog::simulated(&LogSpec { keyframes: 8, ..nano_spec() });
     let label = Label::new(&log.root(), &log.beside("out")).with(&["--jobs", "1"]);
     (log, label)
 }
 
 /// Starts a run and waits until it has finished a keyframe, but not all.
-fn started(label: &Label) -> Child {
-    let mut command = label.command();
+pub(crate) fn started(command: &mut Command, label: &Label) -> Child {
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("started");
     let (journal, since) = (label.output.join("journal.jsonl"), Instant::now());
     while fs::read_to_string(&journal).map_or(0, |text| text.lines().count()) == 0 {
@@ -28,7 +27,7 @@ fn started(label: &Label) -> Child {
     child
 }
 
-fn signal(child: &Child, name: &str) {
+pub(crate) fn signal(child: &Child, name: &str) {
     let status = Command::new("kill").args([name, &child.id().to_string()]).status();
     assert!(status.expect("kill").success());
 }
@@ -51,7 +50,7 @@ fn goes_on(log: &TestLog, label: &Label) {
 #[test]
 fn sigint_gives_130_and_the_same_command_goes_on() {
     let (log, label) = long_run();
-    let child = started(&label);
+    let child = started(&mut label.command(), &label);
     signal(&child, "-INT");
     let output = child.wait_with_output().expect("an end");
     Ended::of(output).exits(130).tells(&["the same command goes on"]);
@@ -61,7 +60,7 @@ fn sigint_gives_130_and_the_same_command_goes_on() {
 #[test]
 fn fault_39_a_second_writer_is_refused_and_a_killed_run_goes_on() {
     let (log, label) = long_run();
-    let child = started(&label);
+    let child = started(&mut label.command(), &label);
     label.run().exits(1).tells(&[".lock", &child.id().to_string()]);
     signal(&child, "-KILL");
     assert_eq!(child.wait_with_output().expect("an end").status.code(), None);

@@ -7,12 +7,17 @@ mod configuration;
 mod convert;
 mod dialect;
 #[cfg(unix)]
+mod hanging_up;
+#[cfg(unix)]
 mod interrupted;
 mod labelled;
 mod lines;
+#[cfg(unix)]
+mod logging;
 mod memory;
 mod parts;
 mod records;
+mod reports;
 mod resume;
 mod streams;
 #[path = "../support/mod.rs"]

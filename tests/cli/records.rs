@@ -1,11 +1,11 @@
-//! The manifest and the report.
+//! The manifest.
 
 use std::fs;
 
 use serde_json::{Value, json};
 
 use crate::labelled::{labelled, strings};
-use crate::support::{Label, SCENE, TestLog, files_under, manifest, occlabel, report, text};
+use crate::support::{Label, SCENE, TestLog, files_under, manifest, occlabel, text};
 
 #[test]
 fn the_manifest_says_how_to_read_the_arrays() {
@@ -91,24 +91,4 @@ fn an_own_taxonomy_file_is_named_without_its_folders() {
     let manifest = manifest(&label.output);
     assert_eq!(manifest["taxonomy"]["name"], "my-classes.toml");
     assert_eq!(manifest["config"]["taxonomy"]["file"], "my-classes.toml");
-}
-
-#[test]
-fn the_report_counts() {
-    let (log, label) = labelled(&[]);
-    let report = report(&label.output);
-    assert_eq!(
-        (&report["outcome"], &report["total"]["keyframes"]),
-        (&json!("complete"), &json!(3))
-    );
-    let points: usize = log
-        .sweeps()
-        .iter()
-        .map(|s| log.points(s["filename"].as_str().expect("a name")).len())
-        .sum();
-    let dropped = &report["total"]["dropped"];
-    let dropped: u64 =
-        dropped.as_object().expect("counts").values().filter_map(Value::as_u64).sum();
-    assert_eq!(report["total"]["points"].as_u64(), Some(points as u64 - dropped));
-    assert_eq!(report["skipped_or_degraded"], json!([]));
 }

@@ -53,14 +53,3 @@ fn messages_can_be_json_with_where_expected_and_found() {
     let error = errors.last().expect("an error");
     assert_eq!((&error["level"], &error["place"]), (&json!("error"), &json!(log.other_files()[1])));
 }
-
-#[test]
-fn progress_can_be_json() {
-    let log = TestLog::nano();
-    let label = Label::new(&log.root(), &log.beside("out")).small();
-    let events = label.with(&["--progress", "json"]).run().exits(0).json_lines();
-    let keyframes = events.iter().filter(|event| event["event"] == "keyframe");
-    assert_eq!(keyframes.count(), 3);
-    assert_eq!((&events[0]["event"], &events[0]["keyframes"]), (&json!("start"), &json!(3)));
-    assert_eq!(events.last().map(|event| &event["event"]), Some(&json!("end")));
-}

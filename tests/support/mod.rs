@@ -2,11 +2,13 @@
 //! its own part.
 #![allow(dead_code, unused_imports)]
 
+mod documented;
 mod npz_dates;
 mod program;
 mod test_log;
 mod tree;
 
+pub(crate) use documented::Documented;
 pub(crate) use npz_dates::npz_dates;
 pub(crate) use program::{
     Ended, Label, SMALL, labelled_drive, occlabel, occlabel_within, program, text,

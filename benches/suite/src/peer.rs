@@ -3,8 +3,7 @@
 use nalgebra::Point3;
 use occlabel_annotate::relabel;
 use occlabel_core::{
-    AggregatedScene, BackgroundSweep, ClassId, DropCounts, Instant, PointCloud, Timestamp,
-    VoxelState,
+    AggregatedScene, BackgroundSweep, ClassId, Instant, PointCloud, Timestamp, VoxelState,
 };
 use occlabel_pipeline::{LabelOptions, Lenses, label_keyframe};
 
@@ -131,5 +130,5 @@ fn sweep<L>(
 
 fn scene<L>(sweeps: impl IntoIterator<Item = BackgroundSweep<L>>) -> AggregatedScene<L> {
     let background = sweeps.into_iter().collect();
-    AggregatedScene { background, objects: vec![], dropped: DropCounts::default() }
+    AggregatedScene::new(background, vec![])
 }

@@ -1,6 +1,6 @@
 //! Sweeps of a scene, one after the other.
 
-use occlabel_core::{AggregatedScene, ClassId, DropCounts};
+use occlabel_core::{AggregatedScene, ClassId};
 
 use crate::SplitSweep;
 
@@ -8,11 +8,7 @@ use crate::SplitSweep;
 pub fn accumulate(
     sweeps: impl IntoIterator<Item = SplitSweep>,
 ) -> AggregatedScene<Option<ClassId>> {
-    let mut scene = AggregatedScene {
-        background: Vec::new(),
-        objects: Vec::new(),
-        dropped: DropCounts::default(),
-    };
+    let mut scene = AggregatedScene::new(Vec::new(), Vec::new());
     for sweep in sweeps {
         scene.background.push(sweep.background);
         scene.objects.extend(sweep.objects);

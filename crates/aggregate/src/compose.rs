@@ -86,7 +86,7 @@ fn keeps_shape(object: &ObjectSweep, time: Timestamp, settings: &WindowSettings)
 mod tests {
     use super::*;
     use nalgebra::Vector3;
-    use occlabel_core::{BackgroundSweep, Box3, DropCounts, PointCloud};
+    use occlabel_core::{BackgroundSweep, Box3, PointCloud};
 
     const PERSON: ClassId = ClassId(7);
     const CAR: ClassId = ClassId(4);
@@ -105,11 +105,8 @@ mod tests {
             boxed: boxed(s as f64),
             cloud: cloud(),
         };
-        AggregatedScene {
-            background: times.iter().map(background).collect(),
-            objects: times.iter().map(object).collect(),
-            dropped: DropCounts::default(),
-        }
+        let background = times.iter().map(background).collect();
+        AggregatedScene::new(background, times.iter().map(object).collect())
     }
 
     fn seconds(s: i64) -> Timestamp {

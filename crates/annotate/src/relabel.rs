@@ -1,6 +1,8 @@
 //! Labels for unlabelled background (labels.md section 5).
 
-use occlabel_core::{AggregatedScene, BackgroundSweep, ClassId, ClassSet, DropCounts, Taxonomy};
+use occlabel_core::{
+    AggregatedScene, BackgroundSweep, ClassCounts, ClassId, ClassSet, DropCounts, Taxonomy,
+};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -59,13 +61,15 @@ pub fn relabel(
     let relabelled: Vec<_> = (scene.background.into_par_iter().zip(verdicts))
         .map(|(sweep, verdicts)| relabel_sweep(sweep, &verdicts, settings))
         .collect();
-    let mut dropped = scene.dropped;
+    let (mut dropped, mut class_from) = (scene.dropped, ClassCounts::default());
     let mut background = Vec::with_capacity(relabelled.len());
-    for (sweep, drops) in relabelled {
+    for (sweep, drops, classes) in relabelled {
         background.push(sweep);
         dropped += drops;
+        class_from += classes;
     }
-    AggregatedScene { background, objects: scene.objects, dropped }
+    class_from.boxes = scene.objects.iter().map(|object| object.cloud.len() as u64).sum();
+    AggregatedScene { background, objects: scene.objects, dropped, class_from }
 }
 
 /// What the vote gives each unlabelled point: a list a sweep, a verdict a point.
@@ -104,22 +108,24 @@ fn relabel_sweep(
     sweep: BackgroundSweep<Option<ClassId>>,
     verdicts: &[Verdict],
     settings: &RelabelSettings,
-) -> (BackgroundSweep<ClassId>, DropCounts) {
-    let mut drops = DropCounts::default();
+) -> (BackgroundSweep<ClassId>, DropCounts, ClassCounts) {
+    let (mut drops, mut classes) = (DropCounts::default(), ClassCounts::default());
     let cloud = sweep.cloud.filter_map(|i, label| {
-        match label.or_else(|| verdicts[i].class()).or(settings.unknown) {
-            None => {
-                drops.unknown += 1;
-                None
-            }
-            Some(class) if settings.ghosts.contains(class) => {
-                drops.ghost += 1;
-                None
-            }
-            class => class,
+        let chosen = (label.map(|class| (class, &mut classes.labels)))
+            .or_else(|| Some((verdicts[i].class()?, &mut classes.neighbours)))
+            .or_else(|| Some((settings.unknown?, &mut classes.unknown)));
+        let Some((class, from)) = chosen else {
+            drops.unknown += 1;
+            return None;
+        };
+        if settings.ghosts.contains(class) {
+            drops.ghost += 1;
+            return None;
         }
+        *from += 1;
+        Some(class)
     });
-    (BackgroundSweep::new(sweep.time, cloud), drops)
+    (BackgroundSweep::new(sweep.time, cloud), drops, classes)
 }
 
 #[cfg(test)]
@@ -145,7 +151,7 @@ mod tests {
         let mut cloud = PointCloud::with_origins(vec![Point3::origin()]);
         points.iter().for_each(|(x, label)| cloud.push(Point3::new(*x, 0.0, 0.0), *label, 0));
         let background = vec![BackgroundSweep::new(Timestamp(0), cloud)];
-        AggregatedScene { background, objects: Vec::new(), dropped: DropCounts::default() }
+        AggregatedScene::new(background, Vec::new())
     }
 
     fn labels(points: &[(f64, Option<ClassId>)], settings: &RelabelSettings) -> Vec<ClassId> {
@@ -190,6 +196,16 @@ mod tests {
         let relabelled = relabel(scene(&[(0.0, Some(A)), (0.1, None), (9.0, Some(B))]), &ghosts);
         assert_eq!(relabelled.background[0].cloud.labels, [B]);
         assert_eq!(relabelled.dropped.ghost, 2);
+    }
+
+    #[test]
+    fn section_5_every_point_is_counted_by_where_its_class_is_from() {
+        let mut ghosts = settings();
+        ghosts.ghosts.insert(B);
+        let points = [(0.0, Some(A)), (0.1, None), (7.0, None), (20.0, Some(B)), (20.1, None)];
+        let relabelled = relabel(scene(&points), &ghosts);
+        let expected = ClassCounts { labels: 1, boxes: 0, neighbours: 1, unknown: 1 };
+        assert_eq!((relabelled.class_from, relabelled.dropped.ghost), (expected, 2));
     }
 
     #[test]

@@ -4,9 +4,7 @@ use std::cell::Cell;
 
 use nalgebra::{Point3, Vector3};
 use occlabel_annotate::{RelabelSettings, relabel};
-use occlabel_core::{
-    AggregatedScene, BackgroundSweep, ClassId, ClassSet, DropCounts, PointCloud, Timestamp,
-};
+use occlabel_core::{AggregatedScene, BackgroundSweep, ClassId, ClassSet, PointCloud, Timestamp};
 use proptest::prelude::*;
 
 type Point = (Point3<f64>, Option<ClassId>);
@@ -42,7 +40,7 @@ fn scene(points: &[Point], a_sweep: usize) -> AggregatedScene<Option<ClassId>> {
         BackgroundSweep::new(Timestamp(0), cloud)
     };
     let background = points.chunks(a_sweep).map(sweep).collect();
-    AggregatedScene { background, objects: Vec::new(), dropped: DropCounts::default() }
+    AggregatedScene::new(background, Vec::new())
 }
 
 fn relabelled(points: &[Point], a_sweep: usize, settings: &RelabelSettings) -> Vec<ClassId> {

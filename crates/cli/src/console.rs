@@ -3,47 +3,82 @@
 use std::io::{ErrorKind, Write};
 use std::sync::Mutex;
 
+use indicatif::ProgressBar;
 use occlabel_core::{Fault, printable};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::args::LogFormat;
+use crate::exit::outcome_name;
 
-/// Where messages go, and how.
+/// The version of the JSON lines on stderr, which `docs/logging.md` describes.
+const SCHEMA: u64 = 1;
+
+/// Where messages go, and how. Every line is one write, whichever thread it comes from.
 #[derive(Debug)]
 pub(crate) struct Console {
     pub(crate) format: LogFormat,
     pub(crate) quiet: bool,
     /// What kept a result from being written, if anything did.
     refused: Mutex<Option<Fault>>,
+    /// What lines must not cut through.
+    bar: Mutex<Option<ProgressBar>>,
+    /// What the last event says beside the exit code, once there was a first.
+    ending: Mutex<Option<Value>>,
 }
 
 impl Console {
     pub(crate) fn new(format: LogFormat, quiet: bool) -> Self {
-        Self { format, quiet, refused: Mutex::default() }
+        let (refused, bar, ending) = <_>::default();
+        Self { format, quiet, refused, bar, ending }
     }
 
     /// What the user must know.
     pub(crate) fn error(&self, fault: &Fault) {
-        self.write("error", fault);
+        self.fault("error", None, fault);
     }
 
     /// What the user may want to know.
     pub(crate) fn warning(&self, scene: &str, fault: &Fault) {
         if !self.quiet {
-            self.write_of("warning", Some(scene), fault);
+            self.fault("warning", Some(scene), fault);
         }
     }
 
     /// What is going on.
     pub(crate) fn info(&self, message: &str) {
-        if !self.quiet {
-            self.line(&match self.format {
-                LogFormat::Text => printable(message),
-                LogFormat::Json => {
-                    json!({ "level": "info", "message": printable(message) }).to_string()
-                }
-            });
+        match self.format {
+            _ if self.quiet => {}
+            LogFormat::Text => self.line(printable(message)),
+            LogFormat::Json => self.event("note", json!({ "level": "info", "message": message })),
         }
+    }
+
+    /// A line for machines, as JSON in either format.
+    pub(crate) fn event(&self, name: &str, mut fields: Value) {
+        escape(&mut fields);
+        fields["schema"] = json!(SCHEMA);
+        fields["event"] = json!(name);
+        self.line(fields.to_string());
+    }
+
+    /// There will be an event `end`, and it will say this.
+    pub(crate) fn will_end(&self, fields: Value) {
+        *self.ending.lock().expect("no thread panics while it prints") = Some(fields);
+    }
+
+    /// The program ends.
+    pub(crate) fn end(&self, code: u8) {
+        let ending = self.ending.lock().expect("no thread panics while it prints").take();
+        if let Some(mut fields) = ending {
+            fields["exit_code"] = json!(code);
+            fields["outcome"] = json!(outcome_name(code));
+            self.event("end", fields);
+        }
+    }
+
+    /// Keeps lines from cutting through a bar, from now on or no longer.
+    pub(crate) fn set_bar(&self, bar: Option<ProgressBar>) {
+        *self.bar.lock().expect("no thread panics while it prints") = bar;
     }
 
     /// A line of the result.
@@ -54,7 +89,7 @@ impl Console {
     /// Bytes of the result. A reader that went away is no error; a full disk is, and is kept.
     pub(crate) fn results(&self, bytes: &[u8]) {
         let mut stdout = std::io::stdout();
-        match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        match self.beside_bar(|| stdout.write_all(bytes).and_then(|()| stdout.flush())) {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => {
                 let fault =
                     Fault::new("stdout", "stdout", "to write the result", error.to_string());
@@ -69,35 +104,37 @@ impl Console {
         self.refused.lock().expect("no thread panics while it prints").take()
     }
 
-    fn write(&self, level: &str, fault: &Fault) {
-        self.write_of(level, None, fault);
+    fn fault(&self, level: &str, scene: Option<&str>, fault: &Fault) {
+        match (self.format, scene) {
+            (LogFormat::Text, Some(scene)) => {
+                self.line(format!("{level}: {}: {fault}", printable(scene)));
+            }
+            (LogFormat::Text, None) => self.line(format!("{level}: {fault}")),
+            (LogFormat::Json, scene) => {
+                let mut fields = fault_json(fault);
+                (fields["level"], fields["scene"]) = (json!(level), json!(scene));
+                self.event("fault", fields);
+            }
+        }
     }
 
-    fn write_of(&self, level: &str, scene: Option<&str>, fault: &Fault) {
-        self.line(&match (self.format, scene) {
-            (LogFormat::Text, Some(scene)) => format!("{level}: {}: {fault}", printable(scene)),
-            (LogFormat::Text, None) => format!("{level}: {fault}"),
-            (LogFormat::Json, scene) => fault_line(level, scene, fault),
-        });
+    /// Writes a line to stderr. A reader that went away is no error.
+    fn line(&self, mut line: String) {
+        line.push('\n');
+        let _ = self.beside_bar(|| std::io::stderr().write_all(line.as_bytes()));
     }
 
-    fn line(&self, line: &str) {
-        let _ = writeln!(std::io::stderr(), "{line}");
+    fn beside_bar<R>(&self, write: impl FnOnce() -> R) -> R {
+        let bar = self.bar.lock().expect("no thread panics while it prints");
+        match &*bar {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
     }
-}
-
-fn fault_line(level: &str, scene: Option<&str>, fault: &Fault) -> String {
-    let mut line = fault_json(fault);
-    escape(&mut line);
-    line["level"] = json!(level);
-    if let Some(scene) = scene {
-        line["scene"] = json!(printable(scene));
-    }
-    line.to_string()
 }
 
 /// Escapes control characters in every text: JSON leaves some of them as they are.
-pub(crate) fn escape(line: &mut serde_json::Value) {
+pub(crate) fn escape(line: &mut Value) {
     for value in line.as_object_mut().into_iter().flat_map(|fields| fields.values_mut()) {
         if let Some(text) = value.as_str() {
             *value = json!(printable(text));
@@ -106,7 +143,7 @@ pub(crate) fn escape(line: &mut serde_json::Value) {
 }
 
 /// A fault as fields.
-pub(crate) fn fault_json(fault: &Fault) -> serde_json::Value {
+pub(crate) fn fault_json(fault: &Fault) -> Value {
     json!({
         "rule": fault.rule,
         "place": fault.place,

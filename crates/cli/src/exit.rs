@@ -1,7 +1,5 @@
 //! How a command ends.
 
-use std::process::ExitCode;
-
 use occlabel_core::Fault;
 
 /// How a command that ran ended.
@@ -50,12 +48,28 @@ impl From<Fault> for Stop {
     }
 }
 
-impl From<Outcome> for ExitCode {
-    fn from(outcome: Outcome) -> Self {
-        Self::from(match outcome {
-            Outcome::Complete => 0,
-            Outcome::Degraded => 3,
-            Outcome::Interrupted => 130,
-        })
+impl Outcome {
+    pub(crate) fn code(self) -> u8 {
+        match self {
+            Self::Complete => 0,
+            Self::Degraded => 3,
+            Self::Interrupted => 130,
+        }
+    }
+
+    /// As reports name it.
+    pub(crate) fn name(self) -> &'static str {
+        outcome_name(self.code())
+    }
+}
+
+/// How a command with this exit code ended, in a word.
+pub(crate) fn outcome_name(code: u8) -> &'static str {
+    match code {
+        0 => "complete",
+        2 => "usage",
+        3 => "degraded",
+        130 => "interrupted",
+        _ => "failed",
     }
 }

@@ -43,6 +43,7 @@ mod verify;
 mod view;
 
 use std::ffi::OsString;
+use std::panic::PanicHookInfo;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -54,7 +55,11 @@ use crate::exit::{Outcome, Stop};
 
 /// Runs the program on the arguments of the process.
 pub fn main() -> ExitCode {
-    run(std::env::args_os())
+    let args: Vec<OsString> = std::env::args_os().collect();
+    if asks_for_json(&args) {
+        std::panic::set_hook(Box::new(tell_panic));
+    }
+    run(args)
 }
 
 /// Runs the program on these arguments, its own name first.
@@ -66,13 +71,23 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitC
     };
     let console = Console::new(cli.log_format, cli.quiet);
     let ended = dispatch(&cli.command, &console);
-    match console.refused().map_or(ended, |fault| Err(fault.into())) {
-        Ok(outcome) => outcome.into(),
+    let code = match console.refused().map_or(ended, |fault| Err(fault.into())) {
+        Ok(outcome) => outcome.code(),
         Err(stop) => {
             stop.faults().iter().for_each(|fault| console.error(fault));
-            ExitCode::from(stop.code())
+            stop.code()
         }
-    }
+    };
+    console.end(code);
+    ExitCode::from(code)
+}
+
+/// A fault of the program's own, as a line like that of any other.
+fn tell_panic(panic: &PanicHookInfo) {
+    let place = panic.location().map_or_else(|| "the program".to_owned(), ToString::to_string);
+    let found = panic.payload_as_str().unwrap_or("a panic");
+    let fault = Fault::new("panic", place, "a program without faults", found);
+    Console::new(LogFormat::Json, false).error(&fault.hint("please report it"));
 }
 
 /// Prints help, or what is wrong with the command line.

@@ -149,19 +149,20 @@ fn merge_reports(reports: &[Value]) -> Value {
         merged[key] = json!(list(key));
     }
     let of_shard = |report: &Value| {
-        let keys = ["outcome", "seconds", "peak_memory_bytes", "threads", "host"];
+        let keys = ["outcome", "seconds", "cpu_seconds", "peak_memory_bytes", "threads", "host"];
         Value::Object(keys.map(|key| (key.to_owned(), report[key].clone())).into_iter().collect())
     };
     merged["shards"] = json!(reports.iter().map(of_shard).collect::<Vec<_>>());
     merged
 }
 
-/// Adds numbers to numbers, key by key; what is there once stays as it is.
+/// Adds numbers to numbers, key by key; peaks become the highest; what is there once stays as it is.
 fn add(sum: &mut Value, more: &Value) {
     match (sum, more) {
         (Value::Object(sum), Value::Object(more)) => {
             for (key, value) in more {
                 match sum.get_mut(key) {
+                    Some(there) if key.starts_with("peak_") => raise(there, value),
                     Some(there) => add(there, value),
                     None => drop(sum.insert(key.clone(), value.clone())),
                 }
@@ -174,6 +175,15 @@ fn add(sum: &mut Value, more: &Value) {
             *sum = json!(sum.as_f64().unwrap_or(0.0) + more.as_f64().unwrap_or(0.0));
         }
         _ => {}
+    }
+}
+
+/// The higher of each number.
+fn raise(peaks: &mut Value, others: &Value) {
+    for (key, other) in others.as_object().into_iter().flatten() {
+        if peaks[key].as_u64() < other.as_u64() {
+            peaks[key] = other.clone();
+        }
     }
 }
 

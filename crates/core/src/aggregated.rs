@@ -15,6 +15,8 @@ pub struct AggregatedScene<L> {
     pub objects: Vec<ObjectSweep>,
     /// What was left out.
     pub dropped: DropCounts,
+    /// Where the classes of its points come from; zero until the background is relabelled.
+    pub class_from: ClassCounts,
 }
 
 /// The background points of one sweep. World coordinates.
@@ -84,7 +86,35 @@ impl std::ops::AddAssign for DropCounts {
     }
 }
 
+/// How many points have their class from where.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClassCounts {
+    /// The log's own point labels.
+    pub labels: u64,
+    /// The track in whose box they are.
+    pub boxes: u64,
+    /// The vote of labelled neighbours.
+    pub neighbours: u64,
+    /// None in reach: the `unknown_class`.
+    pub unknown: u64,
+}
+
+impl std::ops::AddAssign for ClassCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.labels += other.labels;
+        self.boxes += other.boxes;
+        self.neighbours += other.neighbours;
+        self.unknown += other.unknown;
+    }
+}
+
 impl<L> AggregatedScene<L> {
+    /// A scene of these points, of which nothing was dropped.
+    pub fn new(background: Vec<BackgroundSweep<L>>, objects: Vec<ObjectSweep>) -> Self {
+        let (dropped, class_from) = (DropCounts::default(), ClassCounts::default());
+        Self { background, objects, dropped, class_from }
+    }
+
     /// How many points are left.
     pub fn point_count(&self) -> usize {
         let background: usize = self.background.iter().map(|sweep| sweep.cloud.len()).sum();

@@ -41,7 +41,7 @@ mod traverse;
 mod truth;
 mod walk;
 
-pub use aggregated::{AggregatedScene, BackgroundSweep, DropCounts, ObjectSweep};
+pub use aggregated::{AggregatedScene, BackgroundSweep, ClassCounts, DropCounts, ObjectSweep};
 pub use blocks::Blocks;
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
 pub use bundles::{BUNDLE, Bundles, Reach};

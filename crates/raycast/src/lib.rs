@@ -13,11 +13,7 @@
 //!
 //! let wall = vec![Point3::new(3.5, 0.5, 0.5)];
 //! let cloud = PointCloud::from_one_origin(Point3::new(0.5, 0.5, 0.5), wall, vec![ClassId(0)]);
-//! let scene = AggregatedScene {
-//!     background: vec![BackgroundSweep::new(Timestamp(0), cloud)],
-//!     objects: vec![],
-//!     dropped: DropCounts::default(),
-//! };
+//! let scene = AggregatedScene::new(vec![BackgroundSweep::new(Timestamp(0), cloud)], vec![]);
 //! let settings = RaySettings {
 //!     outside: Outside::Clip,
 //!     ignore_near_hit_m: 0.0,

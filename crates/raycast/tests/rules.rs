@@ -2,9 +2,9 @@
 
 use nalgebra::{Point3, Vector3};
 use occlabel_core::{
-    AggregatedScene, BackgroundSweep, Box3, BoxGrowth, ClassId, ClassSet, DropCounts, GridSpec,
-    GrownBox, Instant, ObjectSweep, PlacedObject, PointCloud, Pose, RayCounts, StandingBox,
-    Timestamp, TrackId,
+    AggregatedScene, BackgroundSweep, Box3, BoxGrowth, ClassId, ClassSet, GridSpec, GrownBox,
+    Instant, ObjectSweep, PlacedObject, PointCloud, Pose, RayCounts, StandingBox, Timestamp,
+    TrackId,
 };
 use occlabel_raycast::{Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, count};
 
@@ -50,7 +50,7 @@ fn ray(origin: [f64; 3], end: [f64; 3], class: ClassId) -> PointCloud<ClassId> {
 fn scene(clouds: Vec<(i64, PointCloud<ClassId>)>) -> AggregatedScene<ClassId> {
     let sweep = |(after, cloud)| BackgroundSweep::new(Timestamp(NOW + after), cloud);
     let background = clouds.into_iter().map(sweep).collect();
-    AggregatedScene { background, objects: vec![], dropped: DropCounts::default() }
+    AggregatedScene::new(background, vec![])
 }
 
 fn cast(instant: &Instant, spec: &GridSpec, settings: &RaySettings) -> RayCounts {

@@ -12,11 +12,7 @@
 //! let positions = vec![Point3::new(0.5, 0.5, 0.5); 3];
 //! let labels = vec![ClassId(0), ClassId(1), ClassId(1)];
 //! let cloud = PointCloud::from_one_origin(Point3::new(5.0, 0.0, 0.0), positions, labels);
-//! let scene = AggregatedScene {
-//!     background: vec![BackgroundSweep::new(Timestamp(0), cloud)],
-//!     objects: vec![],
-//!     dropped: DropCounts::default(),
-//! };
+//! let scene = AggregatedScene::new(vec![BackgroundSweep::new(Timestamp(0), cloud)], vec![]);
 //! let spec = GridSpec::new([0.0; 3], [2.0; 3], [1.0; 3])?;
 //! let rules = VoteRules { vote: Vote::Majority, movers: &ClassSet::default(), rank: &[0, 1] };
 //! let votes = voxelize(&Instant::still(&scene), &spec, &rules);

@@ -176,8 +176,8 @@ mod tests {
     use super::*;
     use nalgebra::{Point3, Vector3};
     use occlabel_core::{
-        AggregatedScene, BackgroundSweep, Box3, BoxGrowth, DropCounts, GrownBox, ObjectSweep,
-        PointCloud, Pose, Timestamp,
+        AggregatedScene, BackgroundSweep, Box3, BoxGrowth, GrownBox, ObjectSweep, PointCloud, Pose,
+        Timestamp,
     };
     use proptest::prelude::*;
     use std::cell::Cell;
@@ -211,11 +211,8 @@ mod tests {
 
     fn vote(held: &Held, vote: Vote) -> Option<VoxelVote> {
         let classes = held.background.iter().map(|&class| ClassId(class)).collect();
-        let scene = AggregatedScene {
-            background: vec![BackgroundSweep::new(Timestamp(0), cloud(classes))],
-            objects: held.tracks.iter().map(object).collect(),
-            dropped: DropCounts::default(),
-        };
+        let background = vec![BackgroundSweep::new(Timestamp(0), cloud(classes))];
+        let scene = AggregatedScene::new(background, held.tracks.iter().map(object).collect());
         let growth = BoxGrowth { scale: 1.0, margin_m: 0.0 };
         let mut instant = Instant::still(&scene);
         instant.objects.extend(scene.objects.iter().map(|object| PlacedObject {

@@ -1,5 +1,7 @@
 //! What a run found wrong, and what that makes of its outcome.
 
+use std::collections::BTreeMap;
+
 use occlabel_core::Fault;
 use serde_json::{Value, json};
 
@@ -43,6 +45,18 @@ impl Findings {
     pub(crate) fn outcome(&self) -> Outcome {
         if self.losses.is_empty() { Outcome::Complete } else { Outcome::Degraded }
     }
+}
+
+/// How many of some findings there are of each rule.
+pub(crate) fn by_rule(
+    findings: &[Value],
+    is_meant: impl Fn(&Value) -> bool,
+) -> BTreeMap<&str, usize> {
+    let mut counts = BTreeMap::new();
+    for finding in findings.iter().filter(|finding| is_meant(finding)) {
+        *counts.entry(finding["rule"].as_str().unwrap_or_default()).or_default() += 1;
+    }
+    counts
 }
 
 fn finding(scene: &str, fault: &Fault) -> Value {

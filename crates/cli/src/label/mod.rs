@@ -13,6 +13,7 @@ mod sweep_reader;
 mod tally;
 mod target_dialect;
 mod targets;
+mod usage;
 mod workers;
 
 use std::collections::BTreeSet;
@@ -66,7 +67,10 @@ pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> 
     let targets = Targets::new(&opened, dialect.as_ref(), &args.also).map_err(Stop::usage)?;
     let job = Job { args, opened: &opened, targets: &targets, console, tree, threads };
     let mut findings = Findings::default();
-    let plan = Plan::make(&job, &mut findings)?;
+    let plan = Plan::make(&job, &mut findings, &interrupt)?;
+    if interrupt.is_raised() {
+        return Ok(interrupted(console));
+    }
     let redo = redo::read(args.redo.as_deref(), &plan).map_err(Stop::usage)?;
     if args.dry_run {
         plan.print(console);
@@ -96,15 +100,15 @@ fn label_scenes(
         let done = while_reading(&job.args.log.input, next, || {
             run.label(&finished, &mut begun.journal, &mut findings)
         })?;
+        if interrupt.is_raised() {
+            return Ok(interrupted(job.console));
+        }
         report.add(&planned.name, &done);
         entries.extend(done.entries);
-        if interrupt.is_raised() {
-            job.console.info("interrupted: the same command goes on from here");
-            return Ok(Outcome::Interrupted);
-        }
-        progress.suspend(|| job.console.result(&done.tally.line(&planned.name)));
+        progress.scene_done(&planned.name, || done.tally.json(), findings.losses.len());
+        job.console.result(&done.tally.line(&planned.name));
     }
-    progress.finish();
+    drop(progress);
     let outcome = findings.outcome();
     let manifest = write_manifests(job, plan, &record, &entries, &begun)?;
     begun.end(&manifest, report.json(outcome, &findings, job.threads))?;
@@ -112,6 +116,11 @@ fn label_scenes(
         job.console.result(&report.total_line());
     }
     Ok(outcome)
+}
+
+fn interrupted(console: &Console) -> Outcome {
+    console.info("interrupted: the same command goes on from here");
+    Outcome::Interrupted
 }
 
 /// What the label sets do not say as our own would.

@@ -7,6 +7,7 @@ use occlabel_core::Fault;
 
 use crate::console::Console;
 use crate::exit::Stop;
+use crate::interrupt::Interrupt;
 use crate::label::Job;
 use crate::label::findings::Findings;
 use crate::label::planned_scene::{PlannedScene, Refused};
@@ -25,11 +26,18 @@ struct Unfit {
 }
 
 impl Plan {
-    /// Looks at every wanted scene.
-    pub(crate) fn make(job: &Job, findings: &mut Findings) -> Result<Self, Stop> {
+    /// Looks at every wanted scene, until it is interrupted.
+    pub(crate) fn make(
+        job: &Job,
+        findings: &mut Findings,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Stop> {
         let mut tokens: BTreeSet<&str> = job.args.keyframes.iter().map(String::as_str).collect();
         let (mut scenes, mut unfit) = (Vec::new(), Unfit::default());
         for name in wanted(job) {
+            if interrupt.is_raised() {
+                return Ok(Self { scenes });
+            }
             match PlannedScene::plan(job, &name, &mut tokens, findings) {
                 Ok(scene) => scenes.extend(scene),
                 Err(refused) => unfit.add(&name, refused),

@@ -7,9 +7,10 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use crate::exit::Outcome;
-use crate::label::findings::Findings;
+use crate::label::findings::{Findings, by_rule};
 use crate::label::scene_run::{Finished, SceneDone};
 use crate::label::tally::Tally;
+use crate::label::usage::Usage;
 
 /// Under this name a scene of the report holds its keyframes' summaries.
 const LABELLED: &str = "labelled";
@@ -37,23 +38,38 @@ impl Report {
     }
 
     pub(crate) fn json(&self, outcome: Outcome, findings: &Findings, threads: usize) -> Value {
+        let Usage { cpu, memory, .. } = Usage::now();
         json!({
             "version": 1,
-            "outcome": match outcome {
-                Outcome::Complete => "complete",
-                Outcome::Degraded => "degraded",
-                Outcome::Interrupted => "interrupted",
-            },
-            "scenes": self.scenes,
-            "total": self.total.json(),
+            "outcome": outcome.name(),
+            "scenes": self.scenes_json(findings),
+            "total": with_rules(self.total.json(), findings, |_| true),
             "warnings": findings.warnings,
             "skipped_or_degraded": findings.losses,
             "seconds": self.started.elapsed().as_secs_f64(),
-            "peak_memory_bytes": peak_memory_bytes(),
+            "cpu_seconds": cpu.map(|cpu| cpu.as_secs_f64()),
+            "peak_memory_bytes": memory.map(|memory| memory.highest),
             "threads": threads,
             "host": { "os": std::env::consts::OS, "arch": std::env::consts::ARCH },
         })
     }
+
+    fn scenes_json(&self, findings: &Findings) -> Value {
+        let scene = |(name, scene): (&String, &Value)| {
+            (
+                name.clone(),
+                with_rules(scene.clone(), findings, |finding| finding["scene"] == **name),
+            )
+        };
+        Value::Object(self.scenes.iter().map(scene).collect())
+    }
+}
+
+/// The counts with those of findings by rule.
+fn with_rules(mut counts: Value, findings: &Findings, is_of: impl Fn(&Value) -> bool) -> Value {
+    counts["warnings_by_rule"] = json!(by_rule(&findings.warnings, &is_of));
+    counts["skipped_or_degraded_by_rule"] = json!(by_rule(&findings.losses, &is_of));
+    counts
 }
 
 /// A scene's tally, with what is told of it one by one.
@@ -84,12 +100,4 @@ impl EarlierReport {
             }
         }
     }
-}
-
-/// The process's largest resident set, where the system tells it.
-fn peak_memory_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib * 1024)
 }

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
+use std::time::Instant;
 
 use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene, Timestamp};
 use occlabel_labels::{FileRecord, Journal, JournalEntry, TreePath, WriterLock};
@@ -10,7 +11,7 @@ use serde_json::Value;
 
 use crate::exit::Stop;
 use crate::interrupt::Interrupt;
-use crate::label::clock::{StageClock, StageTimes};
+use crate::label::clock::{StageClock, StageMeter};
 use crate::label::findings::Findings;
 use crate::label::planned_scene::PlannedScene;
 use crate::label::sweep_reader::{Book, SweepReader};
@@ -24,7 +25,7 @@ use crate::progress::Progress;
 pub(crate) struct SceneRun<'a> {
     pub(crate) job: &'a Job<'a>,
     pub(crate) planned: &'a PlannedScene,
-    pub(crate) progress: &'a Progress,
+    pub(crate) progress: &'a Progress<'a>,
     pub(crate) interrupt: &'a Interrupt,
 }
 
@@ -44,6 +45,7 @@ struct Bench<'a> {
     scene: &'a Scene,
     aggregated: &'a AggregatedScene<ClassId>,
     lenses: Lenses,
+    meter: &'a StageMeter,
     finished: &'a Finished,
     /// What was lost of the scene.
     losses: Vec<Value>,
@@ -58,7 +60,6 @@ struct MadeKeyframe {
     /// What the journal and the report say of it.
     summary: Value,
     rays: u64,
-    times: StageTimes,
 }
 
 impl SceneRun<'_> {
@@ -69,34 +70,55 @@ impl SceneRun<'_> {
         journal: &mut Journal,
         findings: &mut Findings,
     ) -> Result<SceneDone, Stop> {
+        let started = Instant::now();
         let mut done = self.finished_before(finished, findings);
         let _lock = WriterLock::of_scene(&self.job.tree, &self.planned.name)?;
         let scene = self.job.opened.source.load(&self.planned.name)?;
-        let mut todo = self.keyframes_to_label(&scene, &done);
-        if todo.is_empty() {
+        let todo = self.keyframes_to_label(&scene, &done);
+        let kept = self.planned.wanted.len() - todo.len();
+        self.progress.scene(&scene.name, todo.len(), kept);
+        if !todo.is_empty() {
+            done = self.label_keyframes(&scene, todo, done, finished, journal, findings)?;
+        }
+        done.tally.seconds = started.elapsed().as_secs_f64();
+        Ok(done)
+    }
+
+    fn label_keyframes(
+        &self,
+        scene: &Scene,
+        mut todo: Vec<&Keyframe>,
+        mut done: SceneDone,
+        finished: &Finished,
+        journal: &mut Journal,
+        findings: &mut Findings,
+    ) -> Result<SceneDone, Stop> {
+        let (meter, lenses) = (&StageMeter::new(), Lenses::default());
+        let (aggregated, book) = self.aggregate(scene, meter, &mut done.tally)?;
+        if self.interrupt.is_raised() {
             return Ok(done);
         }
-        self.progress.scene(&scene.name);
-        let reader = SweepReader::new(self.job);
-        let aggregated = self.aggregate(&scene, &reader, &mut done.tally)?;
-        let book = reader.close();
-        book.tell(self.job, &scene.name, self.progress, findings);
-        done.tally.not_finite = book.not_finite();
-        if done.tally.points == 0 {
-            findings.warn(self.job.console, &scene.name, &no_points());
-        }
-        todo.retain(|keyframe| self.is_readable(&scene, keyframe, &book, findings));
-        let losses = findings.losses_of(&scene.name);
+        self.tell(&book, &done.tally, findings);
+        todo.retain(|keyframe| self.is_readable(scene, keyframe, &book, findings));
+        let (losses, aggregated) = (findings.losses_of(&scene.name), &aggregated);
         let (journal, done) = (Mutex::new(journal), Mutex::new(done));
-        let lenses = Lenses::default();
-        let (scene, aggregated) = (&scene, &aggregated);
-        let bench = Bench { scene, aggregated, lenses, finished, losses, journal, done };
+        let bench = Bench { scene, aggregated, lenses, meter, finished, losses, journal, done };
         let is_over = || self.interrupt.is_raised();
         let (at_once, _) = self.planned.at_once;
         let make = |keyframe: &&Keyframe| self.make(keyframe, &bench);
         let write = |keyframe: &&Keyframe, made| self.finish(keyframe, made, &bench);
         workers::for_each(&todo, at_once, is_over, make, write)?;
-        Ok(bench.done.into_inner().expect("no worker panicked"))
+        let mut done = bench.done.into_inner().expect("no worker panicked");
+        done.tally.costs = meter.costs();
+        Ok(done)
+    }
+
+    /// Tells what reading the sweeps brought to light.
+    fn tell(&self, book: &Book, tally: &Tally, findings: &mut Findings) {
+        book.tell(self.job, &self.planned.name, findings);
+        if tally.points == 0 {
+            findings.warn(self.job.console, &self.planned.name, &no_points());
+        }
     }
 
     /// Whether a keyframe's own sweep could be read; if not, the keyframe is lost.
@@ -127,6 +149,7 @@ impl SceneRun<'_> {
             let losses = entry.summary["losses"].as_array().into_iter().flatten();
             losses.for_each(|loss| findings.remember(loss.clone()));
             done.keep(entry);
+            done.tally.kept += 1;
         }
         done
     }
@@ -147,32 +170,36 @@ impl SceneRun<'_> {
     fn aggregate(
         &self,
         scene: &Scene,
-        reader: &SweepReader,
+        meter: &StageMeter,
         tally: &mut Tally,
-    ) -> Result<AggregatedScene<ClassId>, Fault> {
-        let mut clock = StageClock::start();
-        let (rules, read) = (&self.job.opened.rules, |sweep: &_| reader.read(sweep));
+    ) -> Result<(AggregatedScene<ClassId>, Book), Fault> {
+        let (mut clock, rules) = (meter.clock(), &self.job.opened.rules);
+        let reader = SweepReader::new(self.job, self.interrupt);
+        let read = |sweep: &_| reader.read(sweep);
         let aggregated = aggregate_scene(scene, rules, read, |stage| clock.enter(stage))?;
-        tally.times.add(&clock.stop());
+        let book = reader.close();
+        tally.sweeps = book.sweeps(self.planned.files.iter().map(|(_, bytes)| bytes).sum());
+        tally.points_read = book.points;
+        tally.not_finite = book.not_finite();
         tally.points = aggregated.point_count() as u64;
-        tally.dropped = aggregated.dropped;
+        (tally.dropped, tally.class_from) = (aggregated.dropped, aggregated.class_from);
         tally.boxes_without_points = boxes_without_points(scene, &aggregated);
-        Ok(aggregated)
+        Ok((aggregated, book))
     }
 
     /// Labels a keyframe, in one grid after the other; what is told of it is of the main one.
     fn make(&self, keyframe: &Keyframe, bench: &Bench) -> MadeKeyframe {
-        let mut clock = StageClock::start();
+        let mut clock = bench.meter.clock();
         let [main, others @ ..] = &self.job.targets.grids[..] else { unreachable!("a main grid") };
         let LabelledKeyframe { labels, rays } = self.label_in(main, keyframe, bench, &mut clock);
         let mut files = self.files(main, &labels, keyframe, bench);
-        let summary = bench.summary(&labels);
+        let summary = bench.summary(&labels, &main.rules.taxonomy.names);
         for grid in others {
             let labelled = self.label_in(grid, keyframe, bench, &mut clock);
             let more = self.files(grid, &labelled.labels, keyframe, bench);
             files = files.and_then(|files| Ok([files, more?].concat()));
         }
-        MadeKeyframe { files, summary, rays, times: clock.stop() }
+        MadeKeyframe { files, summary, rays }
     }
 
     fn label_in(
@@ -237,15 +264,15 @@ impl SceneRun<'_> {
         let mut done = bench.done.lock().expect("no worker panicked");
         done.keep(&entry);
         done.tally.rays += made.rays;
-        done.tally.times.add(&made.times);
         self.progress.keyframe(scene, token, made.rays);
         Ok(())
     }
 }
 
 impl Bench<'_> {
-    fn summary(&self, labels: &OccupancyLabels) -> Value {
-        let summary = Summary { voxels: VoxelCounts::of(labels), losses: self.losses.clone() };
+    fn summary(&self, labels: &OccupancyLabels, names: &[String]) -> Value {
+        let voxels = VoxelCounts::of(labels, names);
+        let summary = Summary { voxels, losses: self.losses.clone() };
         serde_json::to_value(summary).expect("counts are JSON")
     }
 }

@@ -5,19 +5,25 @@ use std::sync::Mutex;
 
 use occlabel_core::{Fault, Keyframe, PointCloud, PointLabel, Scene, SweepHeader, is_finite};
 
+use crate::interrupt::Interrupt;
 use crate::label::Job;
 use crate::label::findings::Findings;
-use crate::progress::Progress;
+use crate::label::tally::SweepCounts;
 
 /// Reads sweeps, from any thread.
 pub(crate) struct SweepReader<'a> {
     job: &'a Job<'a>,
+    interrupt: &'a Interrupt,
     book: Mutex<Book>,
 }
 
 /// What reading brought to light.
 #[derive(Default)]
 pub(crate) struct Book {
+    /// Sweeps that were read.
+    read: u64,
+    /// Their points.
+    pub(crate) points: u64,
     warnings: Vec<Fault>,
     /// Sweeps that were left out, by their id.
     lost: BTreeMap<String, Fault>,
@@ -26,15 +32,18 @@ pub(crate) struct Book {
 }
 
 impl<'a> SweepReader<'a> {
-    pub(crate) fn new(job: &'a Job<'a>) -> Self {
-        Self { job, book: Mutex::default() }
+    pub(crate) fn new(job: &'a Job<'a>, interrupt: &'a Interrupt) -> Self {
+        Self { job, interrupt, book: Mutex::default() }
     }
 
-    /// The points of a sweep; none if it is left out.
+    /// The points of a sweep; none if it is left out, or if the scene will not be labelled any more.
     pub(crate) fn read(
         &self,
         sweep: &SweepHeader,
     ) -> Result<Option<PointCloud<PointLabel>>, Fault> {
+        if self.interrupt.is_raised() {
+            return Ok(None);
+        }
         let read = self.job.opened.source.read_sweep(sweep);
         let not_finite = read.as_ref().map_or(0, |points| count_not_finite(&points.cloud));
         let mut book = self.book.lock().expect("no reader panicked");
@@ -43,6 +52,8 @@ impl<'a> SweepReader<'a> {
         }
         match read {
             Ok(points) => {
+                book.read += 1;
+                book.points += points.cloud.len() as u64;
                 book.warnings.extend(points.warnings);
                 Ok(Some(points.cloud))
             }
@@ -69,24 +80,21 @@ impl<'a> SweepReader<'a> {
 }
 
 impl Book {
+    /// The sweeps, whose files have so many bytes.
+    pub(crate) fn sweeps(&self, file_bytes: u64) -> SweepCounts {
+        SweepCounts { read: self.read, left_out: self.lost.len() as u64, file_bytes }
+    }
+
     /// Points without finite coordinates, by the file of their sweeps.
     pub(crate) fn not_finite(&self) -> BTreeMap<String, usize> {
         self.not_finite.clone()
     }
 
     /// Tells of everything. Absent files were told of before any sweep was read.
-    pub(crate) fn tell(
-        &self,
-        job: &Job,
-        scene: &str,
-        progress: &Progress,
-        findings: &mut Findings,
-    ) {
+    pub(crate) fn tell(&self, job: &Job, scene: &str, findings: &mut Findings) {
         let lost = self.lost.values().filter(|fault| fault.rule != "missing-file");
-        progress.suspend(|| {
-            self.warnings.iter().for_each(|fault| findings.warn(job.console, scene, fault));
-            lost.for_each(|fault| findings.lose(job.console, scene, fault));
-        });
+        self.warnings.iter().for_each(|fault| findings.warn(job.console, scene, fault));
+        lost.for_each(|fault| findings.lose(job.console, scene, fault));
     }
 
     /// What a keyframe lost with its reference sweep, if that was left out.

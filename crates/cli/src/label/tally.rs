@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use occlabel_core::{DropCounts, OccupancyLabels, VoxelState};
+use occlabel_core::{ClassCounts, DropCounts, OccupancyLabels, VoxelState};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::label::clock::StageTimes;
+use crate::label::clock::StageCosts;
 
 /// What a keyframe came out as: kept in the journal and the report, so that a later run that keeps
 /// the keyframe can tell of it.
@@ -17,13 +17,26 @@ pub(crate) struct Summary {
     pub(crate) losses: Vec<Value>,
 }
 
-/// Voxels by state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Voxels by state, and the occupied ones by class.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct VoxelCounts {
     pub(crate) occupied: u64,
     pub(crate) free: u64,
     pub(crate) unobserved: u64,
     pub(crate) seen_by_cameras: u64,
+    /// By the class's name; a class that does not occur is absent.
+    #[serde(default)]
+    pub(crate) by_class: BTreeMap<String, u64>,
+}
+
+/// Sweeps of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct SweepCounts {
+    pub(crate) read: u64,
+    /// Absent or broken.
+    pub(crate) left_out: u64,
+    /// Sizes of the files that hold them and their point labels.
+    pub(crate) file_bytes: u64,
 }
 
 /// An annotated box that holds no point.
@@ -39,10 +52,17 @@ pub(crate) struct EmptyBox {
 pub(crate) struct Tally {
     /// Keyframes labelled, by this run or an earlier one.
     pub(crate) keyframes: usize,
-    /// Points that serve the scene.
-    pub(crate) points: u64,
+    /// Those of an earlier one.
+    pub(crate) kept: usize,
+    pub(crate) sweeps: SweepCounts,
+    /// Points of the sweeps that were read.
+    pub(crate) points_read: u64,
     /// Points dropped, by reason.
     pub(crate) dropped: DropCounts,
+    /// The others, which serve the scene.
+    pub(crate) points: u64,
+    /// The same by where their classes come from.
+    pub(crate) class_from: ClassCounts,
     /// Rays of the keyframes labelled by this run.
     pub(crate) rays: u64,
     /// Annotated boxes at the time of a sweep that hold no point of it.
@@ -50,11 +70,14 @@ pub(crate) struct Tally {
     /// Points without finite coordinates, by the file of their sweep.
     pub(crate) not_finite: BTreeMap<String, usize>,
     pub(crate) voxels: VoxelCounts,
-    pub(crate) times: StageTimes,
+    /// Of the wall's clock.
+    pub(crate) seconds: f64,
+    pub(crate) costs: StageCosts,
 }
 
 impl VoxelCounts {
-    pub(crate) fn of(labels: &OccupancyLabels) -> Self {
+    /// Counts, the classes being named so.
+    pub(crate) fn of(labels: &OccupancyLabels, names: &[String]) -> Self {
         let states = labels.states.values();
         let count = |state| states.iter().filter(|value| **value == state).count() as u64;
         Self {
@@ -62,6 +85,7 @@ impl VoxelCounts {
             free: count(VoxelState::Free),
             unobserved: count(VoxelState::Unobserved),
             seen_by_cameras: labels.mask_camera.values().iter().map(|&seen| u64::from(seen)).sum(),
+            by_class: by_class(labels, names),
         }
     }
 
@@ -70,29 +94,56 @@ impl VoxelCounts {
         self.free += other.free;
         self.unobserved += other.unobserved;
         self.seen_by_cameras += other.seen_by_cameras;
+        for (class, voxels) in &other.by_class {
+            *self.by_class.entry(class.clone()).or_default() += voxels;
+        }
+    }
+}
+
+/// Occupied voxels by the names of their classes.
+fn by_class(labels: &OccupancyLabels, names: &[String]) -> BTreeMap<String, u64> {
+    let mut counts = vec![0; names.len()];
+    for (class, state) in labels.semantics.values().iter().zip(labels.states.values()) {
+        if *state == VoxelState::Occupied {
+            counts[usize::from(*class)] += 1;
+        }
+    }
+    names.iter().cloned().zip(counts).filter(|(_, voxels)| *voxels > 0).collect()
+}
+
+impl SweepCounts {
+    fn add(&mut self, other: &Self) {
+        self.read += other.read;
+        self.left_out += other.left_out;
+        self.file_bytes += other.file_bytes;
     }
 }
 
 impl Tally {
     pub(crate) fn add(&mut self, other: &Self) {
         self.keyframes += other.keyframes;
-        self.points += other.points;
+        self.kept += other.kept;
+        self.sweeps.add(&other.sweeps);
+        self.points_read += other.points_read;
         self.dropped += other.dropped;
+        self.points += other.points;
+        self.class_from += other.class_from;
         self.rays += other.rays;
         self.boxes_without_points.extend_from_slice(&other.boxes_without_points);
         self.voxels.add(&other.voxels);
-        self.times.add(&other.times);
+        self.seconds += other.seconds;
+        self.costs.add(&other.costs);
     }
 
     /// One line about a scene, or about all of them.
     pub(crate) fn line(&self, name: &str) -> String {
-        let VoxelCounts { occupied, free, unobserved, .. } = self.voxels;
+        let VoxelCounts { occupied, free, unobserved, .. } = &self.voxels;
         let mut line = format!(
             "{name}: {} keyframes, {} rays; voxels: {occupied} occupied, {free} free, \
              {unobserved} unobserved",
             self.keyframes, self.rays
         );
-        let times = self.times.line();
+        let times = self.costs.line();
         if !times.is_empty() {
             line += &format!("; {times}");
         }
@@ -102,14 +153,30 @@ impl Tally {
     pub(crate) fn json(&self) -> Value {
         json!({
             "keyframes": self.keyframes,
-            "points": self.points,
+            "kept": self.kept,
+            "sweeps": self.sweeps,
+            "points_read": self.points_read,
             "dropped": drops_json(&self.dropped),
+            "points": self.points,
+            "class_from": class_from_json(&self.class_from),
             "rays": self.rays,
             "boxes_without_points": self.boxes_without_points.len(),
             "voxels": self.voxels,
-            "seconds_by_stage": self.times.seconds(),
+            "seconds": self.seconds,
+            "seconds_by_stage": self.costs.seconds(),
+            "cpu_seconds_by_stage": self.costs.cpu_seconds(),
+            "peak_memory_bytes_by_stage": self.costs.peak_memory_bytes(),
         })
     }
+}
+
+fn class_from_json(class_from: &ClassCounts) -> Value {
+    json!({
+        "labels": class_from.labels,
+        "boxes": class_from.boxes,
+        "neighbours": class_from.neighbours,
+        "unknown": class_from.unknown,
+    })
 }
 
 fn drops_json(dropped: &DropCounts) -> Value {

@@ -107,7 +107,7 @@ fn keeps_shape(object: &ObjectSweep, moment: &JudgedMoment) -> bool {
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
-    use occlabel_core::{Box3, DropCounts, PointCloud, TrackId};
+    use occlabel_core::{Box3, PointCloud, TrackId};
 
     use super::*;
 
@@ -137,7 +137,7 @@ mod tests {
         let point = vec![Point3::new(7.0, 0.0, 0.0)];
         let cloud = PointCloud::from_one_origin(Point3::origin(), point, vec![None]);
         let background = vec![BackgroundSweep::new(Timestamp(400_000_000), cloud)];
-        AggregatedScene { background, objects, dropped: DropCounts::default() }
+        AggregatedScene::new(background, objects)
     }
 
     fn moment(standing: &[StandingBox]) -> JudgedMoment<'_> {
