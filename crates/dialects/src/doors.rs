@@ -99,6 +99,7 @@ fn describe(bytes: &[u8]) -> bool {
     let Some((ending, bytes)) = bytes.split_first() else { return false };
     let name = format!("a.{}", ENDINGS[usize::from(*ending) % ENDINGS.len()]);
     in_folder(&[(&name, bytes)], |root| {
+        let _ = LabelSet::open(root, None);
         Description::of_file(&root.join(&name), None).is_ok_and(|told| told.contents.is_some())
     })
 }

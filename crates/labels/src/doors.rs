@@ -215,7 +215,7 @@ mod tests {
     use super::*;
 
     /// Runs of each reader.
-    const CASES: u32 = 200;
+    const CASES: u32 = 100;
 
     #[test]
     fn fault_34_damaged_files_of_a_tree_are_read_or_refused() {

@@ -46,6 +46,18 @@ pub const DOORS: &[Door] = &[
         knock: semantickitti::doors::sequence,
         seeds: semantickitti::doors::files,
     },
+    #[cfg(feature = "av2")]
+    Door {
+        name: "argoverse2",
+        knock: crate::argoverse2::doors::log,
+        seeds: crate::argoverse2::doors::files,
+    },
+    #[cfg(feature = "waymo-v2")]
+    Door {
+        name: "waymo_parquet",
+        knock: crate::waymo::doors::segment,
+        seeds: crate::waymo::doors::files,
+    },
     Door { name: "kitti360_text", knock: kitti360::doors::text, seeds: kitti360::doors::texts },
     Door { name: "kitti360_boxes", knock: kitti360::doors::boxes, seeds: kitti360::doors::objects },
     Door { name: "kitti360_fused", knock: kitti360::doors::fused, seeds: kitti360::doors::clouds },

@@ -35,3 +35,10 @@ fn any_grid(bytes: &mut Bytes) -> Option<GridSpec> {
     };
     GridSpec::new(min_m, max_m, size_m).ok()
 }
+
+/// Cubes of a metre from the origin on, and points about them.
+pub(super) fn grids() -> Vec<Vec<u8>> {
+    let sides = [&[3, 0, 0].repeat(3)[..], &[3, 0, 1].repeat(3), &[0, 9, 9, 9]].concat();
+    let points = [3, 0, 2].repeat(18);
+    vec![[&sides[..], &[0], &points].concat()]
+}

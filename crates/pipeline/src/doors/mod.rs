@@ -21,7 +21,7 @@ pub const TEXTS: &[Door] = &[
 
 /// Geometry: what is taken has to work, and what it gives has to make sense.
 pub const GEOMETRY: &[Door] = &[
-    Door { name: "grid", knock: grids::grid, seeds: some_bytes },
+    Door { name: "grid", knock: grids::grid, seeds: grids::grids },
     Door { name: "walk", knock: walks::walk_both_ways, seeds: some_bytes },
     Door { name: "camera", knock: cameras::camera, seeds: cameras::cameras },
     Door { name: "track", knock: tracks::track, seeds: some_bytes },

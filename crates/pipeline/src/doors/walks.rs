@@ -35,10 +35,10 @@ fn noted(list: &mut Vec<(usize, [i64; 3])>) -> impl FnMut(usize, [i64; 3]) -> Co
     }
 }
 
-/// Near the grid, or up to half a million voxels away: some rays are too long for 64 bits.
+/// Near the grid, or up to a million voxels away: some rays are too long for 64 bits.
 fn point(bytes: &mut Bytes) -> LatticePoint {
-    let coordinate = |bytes: &mut Bytes| match bytes.byte() % 8 {
-        0 => bytes.whole() >> 33,
+    let coordinate = |bytes: &mut Bytes| match bytes.byte() % 32 {
+        0 => bytes.whole() >> 32,
         _ => bytes.whole() >> 48,
     };
     LatticePoint([coordinate(bytes), coordinate(bytes), coordinate(bytes)].map(|q| q | 1))
