@@ -35,6 +35,8 @@
 mod atomic;
 mod differences;
 mod disk;
+#[cfg(any(test, fuzzing))]
+pub mod doors;
 mod earlier;
 #[cfg(feature = "faults")]
 mod faults;

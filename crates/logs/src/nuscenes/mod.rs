@@ -8,6 +8,8 @@ mod cameras;
 mod captures;
 mod chains;
 mod copies;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod doors;
 mod keyframes;
 mod label_files;
 mod label_names;

@@ -3,6 +3,8 @@
 //! docs/semantickitti.md names every file that is read. There are no boxes and no tracks.
 
 mod classes;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod doors;
 mod mounting;
 mod scene;
 mod sequences;
