@@ -27,8 +27,11 @@ static DIALECTS: LazyLock<Vec<Dialect>> = LazyLock::new(|| {
     Dialect::all().into_iter().map(small).collect()
 });
 
+/// Files by their paths.
+type Files = Vec<(String, Vec<u8>)>;
+
 /// The sound files of a keyframe of each dialect, as named in its tree.
-static FILES: LazyLock<Vec<Vec<(String, Vec<u8>)>>> = LazyLock::new(|| {
+static FILES: LazyLock<Vec<Files>> = LazyLock::new(|| {
     let files = |dialect: &Dialect| {
         let encoded = dialect.encode(&labels(dialect), "scene", "token").unwrap();
         encoded.files.into_iter().map(|(path, bytes)| (path.to_string(), bytes)).collect()
@@ -70,7 +73,7 @@ fn dialect_files(bytes: &[u8]) -> bool {
 
 /// Every file of every dialect, behind its numbers.
 fn files() -> Vec<Vec<u8>> {
-    let of_dialect = |(number, files): (usize, &Vec<(String, Vec<u8>)>)| {
+    let of_dialect = |(number, files): (usize, &Files)| {
         let behind = move |(place, (_, bytes)): (usize, &(String, Vec<u8>))| {
             [&[number as u8, place as u8][..], bytes].concat()
         };

@@ -18,7 +18,7 @@ static FILES: LazyLock<[(&str, Vec<u8>); 5]> = LazyLock::new(|| {
     let time = || ("timestamp_ns", Arc::new(Int64Array::from(vec![TIME_NS])) as ArrayRef);
     let names = |name, texts: &[&str]| (name, Arc::new(StringArray::from(texts.to_vec())) as _);
     let lasers = ("laser_number", Arc::new(Int64Array::from(vec![0, 40])) as ArrayRef);
-    let lidars = names("sensor_name", &["up_lidar", "down_lidar"]);
+    let sensors = names("sensor_name", &["up_lidar", "down_lidar", "ring_front_center"]);
     let camera = names("sensor_name", &["ring_front_center"]);
     let boxed = [time(), names("track_uuid", &["t"]), names("category", &["car"])];
     let sides = [("length_m", 4.0), ("width_m", 2.0), ("height_m", 1.5)];
@@ -27,7 +27,7 @@ static FILES: LazyLock<[(&str, Vec<u8>); 5]> = LazyLock::new(|| {
     let points = [("x", 1.0), ("y", 2.0), ("z", 3.0)];
     [
         ("a/city_SE3_egovehicle.feather", table([vec![time()], pose(1)])),
-        ("a/calibration/egovehicle_SE3_sensor.feather", table([vec![lidars], pose(2)])),
+        ("a/calibration/egovehicle_SE3_sensor.feather", table([vec![sensors], pose(3)])),
         (
             "a/calibration/intrinsics.feather",
             table([vec![camera], reals(1, &lens), reals(1, &image)]),

@@ -72,6 +72,9 @@ pub(super) fn any_model(bytes: &mut Bytes) -> Result<CameraModel, CameraError> {
 /// One of every model.
 pub(super) fn cameras() -> Vec<Vec<u8>> {
     let plain = |kind: u8| [&[kind, 0][..], &[3, 20, 0, 5, 1, 90, 40].repeat(16)].concat();
-    let ocam = [&[4][..], &[3, 0, 3], &[0, 0].repeat(3), &[3, 0, 1].repeat(40)].concat();
+    let (one, nought) = ([3, 0, 1], [0, 0]);
+    let polynomial = [&[3, 0, 3][..], &nought.repeat(3)].concat();
+    let affine = [&one[..], &nought, &nought].concat();
+    let ocam = [&[4][..], &polynomial, &one.repeat(2), &affine, &one.repeat(40)].concat();
     (0..4).map(plain).chain([ocam]).collect()
 }
