@@ -1,11 +1,11 @@
 //! Which of a scene's files are there, found out without reading them.
 
 use std::collections::{BTreeSet, HashMap};
-use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
 use occlabel_core::{Fault, Scene};
+use occlabel_disk as disk;
 
 use crate::SceneSource;
 
@@ -97,7 +97,7 @@ fn kind(file: &str) -> &str {
 /// A file's size; `None` if it is absent. One that is there but cannot be looked at counts as empty:
 /// reading it will tell what is wrong.
 fn size(path: &Path) -> Option<u64> {
-    match fs::metadata(path) {
+    match disk::metadata(path) {
         Ok(metadata) => Some(metadata.len()),
         Err(error) => (error.kind() != ErrorKind::NotFound).then_some(0),
     }
