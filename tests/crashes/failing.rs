@@ -49,7 +49,7 @@ pub(crate) fn is_told(line: &Line, output: &Path, fault: &str, ended: &Ended) {
         Some(0) if line.code == 0 => line.is_as_undisturbed(output, fault),
         Some(1) if line.code == 1 => {}
         Some(1 | 2) => assert!(ended.stderr.lines().any(is_error), "{fault}: {ended:?}"),
-        Some(3) => assert!(ended.stderr.contains("warning"), "{fault}: {ended:?}"),
+        Some(3) => assert!(ended.stderr.contains("cannot be read"), "{fault}: {ended:?}"),
         _ => panic!("{fault}: {ended:?}"),
     }
 }

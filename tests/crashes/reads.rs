@@ -11,8 +11,8 @@ use crate::support::{SMALL, occlabel, report, text};
 /// A format, the taxonomies of its world and of its labels, and how many operations are passed over.
 const FORMATS: [(&str, [&str; 2], usize); 3] = [
     ("semantickitti", ["occ3d-nuscenes", "semantickitti"], 23),
-    ("mcap", ["occ3d-waymo", "occ3d-waymo"], 97),
-    ("waymo", ["occ3d-waymo", "occ3d-waymo"], 47),
+    ("mcap", ["occ3d-waymo", "occ3d-waymo"], 19),
+    ("waymo", ["occ3d-waymo", "occ3d-waymo"], 29),
 ];
 
 /// A wall and a tree along a road, seen twice.

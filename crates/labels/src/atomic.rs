@@ -73,6 +73,19 @@ pub(crate) fn create_exclusive(path: &Path, bytes: &[u8]) -> Result<bool, Fault>
     created.map_err(|error| write_fault(path, bytes.len(), &error))
 }
 
+/// Replaces a file by its new contents. `false` if another, who has it now, removed our part as a
+/// leftover.
+///
+/// # Errors
+/// If it cannot be written.
+pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<bool, Fault> {
+    let replaced = write_part(path, bytes).and_then(|part| match part.rename(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        renamed => renamed.and_then(|()| sync_folder_of(path)).map(|()| true),
+    });
+    replaced.map_err(|error| write_fault(path, bytes.len(), &error))
+}
+
 /// Creates a folder and those above it. One that is a symbolic link to a folder counts as there.
 ///
 /// # Errors

@@ -1,13 +1,13 @@
 //! One writer at a time: a scene's `.lock` and a run's hold the writer's process.
 
 use std::fs::{self, OpenOptions};
-use std::io::{self, Seek, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
-use occlabel_disk::{self as disk, File};
+use occlabel_disk as disk;
 
-use crate::atomic::{create_dir, create_exclusive, remove_file, remove_leftovers};
+use crate::atomic::{create_dir, create_exclusive, remove_file, remove_leftovers, replace};
 use crate::files::read_fault;
 use crate::{LabelTree, TreePath};
 
@@ -103,9 +103,10 @@ fn began(process: u32) -> Option<u64> {
     after_name.split_whitespace().nth(19)?.parse().ok()
 }
 
-/// Puts us into a lock whose process is gone. `false` if the lock is gone too, by now.
+/// Puts us in place of a lock whose process is gone. `false` if it is another's lock by now, or none.
 ///
-/// The lock's file is itself locked meanwhile, so that of two who find it stale one is refused.
+/// The lock's file is itself locked meanwhile, so that one at a time replaces it; who comes next finds
+/// another file in its place.
 fn take_over(path: &Path, us: &Owner) -> Result<bool, Fault> {
     let opened = disk::open_by(OpenOptions::new().read(true).write(true), path);
     let mut file = match opened {
@@ -116,10 +117,11 @@ fn take_over(path: &Path, us: &Owner) -> Result<bool, Fault> {
     file.lock().map_err(unreadable)?;
     let text = io::read_to_string(&mut file).map_err(unreadable)?;
     refuse_if_held(path, &text)?;
-    overwrite(&mut file, &us.text()).map_err(unreadable)?;
     match disk::read_to_string(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        text => Ok(text.map_err(unreadable)? == us.text()),
+        Err(error) => Err(unreadable(error)),
+        Ok(now) if now != text => Ok(false),
+        Ok(_) => replace(path, us.text().as_bytes()),
     }
 }
 
@@ -135,13 +137,6 @@ fn refuse_if_held(path: &Path, text: &str) -> Result<(), Fault> {
         None => Err(Fault::new("lock", place, "the id of a process", format!("`{text}`"))
             .hint("remove this file if no other occlabel is at work")),
     }
-}
-
-fn overwrite(file: &mut File, text: &str) -> io::Result<()> {
-    file.rewind()?;
-    file.set_len(0)?;
-    file.write_all(text.as_bytes())?;
-    disk::sync(file)
 }
 
 #[cfg(test)]
