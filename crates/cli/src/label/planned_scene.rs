@@ -36,6 +36,8 @@ pub(crate) struct PlannedScene {
     /// An upper estimate of the memory that takes.
     memory_bytes: u64,
     sweeps: usize,
+    /// What was told of it.
+    told: Vec<Fault>,
     /// An upper estimate of its points.
     points: u64,
 }
@@ -85,8 +87,25 @@ impl PlannedScene {
             memory_bytes: model.bytes(at_once.0, at_once.1),
             files: inventory.present,
             sweeps: scene.sweeps.len(),
+            told: told_by(&scene),
             points,
         }))
+    }
+
+    /// Refuses the scene, read again to be labelled, if less of it can be read than when it was planned:
+    /// what it loses has been told by then.
+    pub(crate) fn check_same(&self, scene: &Scene) -> Result<(), Fault> {
+        let told = told_by(scene);
+        if let Some(fault) = told.into_iter().find(|fault| !self.told.contains(fault)) {
+            return Err(fault);
+        }
+        match scene.sweeps.len() == self.sweeps {
+            true => Ok(()),
+            false => {
+                let expected = format!("{} sweeps, as when the run began", self.sweeps);
+                Err(Fault::new("log-changed", &self.name, expected, scene.sweeps.len().to_string()))
+            }
+        }
     }
 
     /// Whether earlier runs labelled all that is asked for.
@@ -130,6 +149,11 @@ fn chosen_keyframes(job: &Job, scene: &Scene, tokens: &mut BTreeSet<&str>) -> BT
 }
 
 /// Records that the reader refused.
+fn told_by(scene: &Scene) -> Vec<Fault> {
+    let refused = scene.refused.iter().map(|refusal| &refusal.fault);
+    scene.warnings.iter().chain(refused).cloned().collect()
+}
+
 fn lose_refused(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<(), Refused> {
     let faults: Vec<Fault> = scene.refused.iter().map(|refusal| refusal.fault.clone()).collect();
     let is_asked_for = scene.refused.iter().all(|refusal| refusal.loss == Loss::Remainder);
