@@ -30,10 +30,10 @@ pub(crate) fn check(line: &Line, output: &Path, why: &str) {
 }
 
 /// Whether the file is of those that are the same each time: not a part, a lock, a record of a run that
-/// goes on, or a report.
+/// goes on, a report, or a list of what `verify` could not read.
 fn is_final(path: &str) -> bool {
     let name = path.rsplit('/').next().unwrap_or(path);
-    ["npz", "npy", "html", "txt"].iter().any(|ending| name.ends_with(ending))
+    ["npz", "npy", "html"].iter().any(|ending| name.ends_with(ending))
 }
 
 /// The manifests that the line wrote: of the tree, and of those below it.

@@ -208,7 +208,10 @@ pub(crate) fn remove_leftovers(path: &Path) -> io::Result<()> {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if name.starts_with(&prefix) && name.ends_with(PART) {
-            let _ = disk::remove_file(&entry.path());
+            match disk::remove_file(&entry.path()) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
         }
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! Whether the output folder may be written to.
 
+use std::fs::DirEntry;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
@@ -17,14 +18,19 @@ pub(crate) fn check(files: &RunFiles, record: &RunRecord) -> Result<(), Fault> {
     Err(Fault::new("output", root.display().to_string(), expected, "other files"))
 }
 
-/// Whether there is nothing, or nothing but the lock of a run that never began.
+/// Whether there is nothing, or nothing but what a run that never began left: its lock, and parts of this
+/// and of its record.
 fn is_empty(root: &Path) -> Result<bool, Fault> {
     match disk::list(root) {
-        Ok(entries) => Ok(entries.iter().all(|entry| entry.file_name() == ".run.lock")),
+        Ok(entries) => Ok(entries.iter().all(is_of_beginning)),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(true),
         Err(error) if error.kind() == ErrorKind::NotADirectory => Ok(false),
         Err(error) => Err(unreadable(root, &error)),
     }
+}
+
+fn is_of_beginning(entry: &DirEntry) -> bool {
+    entry.file_name().to_string_lossy().starts_with(".run.")
 }
 
 fn begun_before(files: &RunFiles, record: &RunRecord) -> Result<bool, Fault> {
