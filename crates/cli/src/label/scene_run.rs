@@ -74,6 +74,7 @@ impl SceneRun<'_> {
         let mut done = self.finished_before(finished, findings);
         let _lock = WriterLock::of_scene(&self.job.tree, &self.planned.name)?;
         let scene = self.job.opened.source.load(&self.planned.name)?;
+        self.planned.check_same(&scene)?;
         let todo = self.keyframes_to_label(&scene, &done);
         let kept = self.planned.wanted.len() - todo.len();
         self.progress.scene(&scene.name, todo.len(), kept);
