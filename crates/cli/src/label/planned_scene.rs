@@ -99,13 +99,11 @@ impl PlannedScene {
         if let Some(fault) = told.into_iter().find(|fault| !self.told.contains(fault)) {
             return Err(fault);
         }
-        match scene.sweeps.len() == self.sweeps {
-            true => Ok(()),
-            false => {
-                let expected = format!("{} sweeps, as when the run began", self.sweeps);
-                Err(Fault::new("log-changed", &self.name, expected, scene.sweeps.len().to_string()))
-            }
+        if scene.sweeps.len() == self.sweeps {
+            return Ok(());
         }
+        let expected = format!("{} sweeps, as when the run began", self.sweeps);
+        Err(Fault::new("log-changed", &self.name, expected, scene.sweeps.len().to_string()))
     }
 
     /// Whether earlier runs labelled all that is asked for.
@@ -148,12 +146,13 @@ fn chosen_keyframes(job: &Job, scene: &Scene, tokens: &mut BTreeSet<&str>) -> BT
     scene.keyframes.iter().filter(is_chosen).map(|keyframe| keyframe.token.clone()).collect()
 }
 
-/// Records that the reader refused.
+/// All that reading a scene's tables told.
 fn told_by(scene: &Scene) -> Vec<Fault> {
     let refused = scene.refused.iter().map(|refusal| &refusal.fault);
     scene.warnings.iter().chain(refused).cloned().collect()
 }
 
+/// Records that the reader refused.
 fn lose_refused(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<(), Refused> {
     let faults: Vec<Fault> = scene.refused.iter().map(|refusal| refusal.fault.clone()).collect();
     let is_asked_for = scene.refused.iter().all(|refusal| refusal.loss == Loss::Remainder);
