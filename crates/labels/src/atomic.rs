@@ -177,9 +177,13 @@ pub(crate) fn refuse_symlink(path: &Path) -> Result<(), Fault> {
             Err(Fault::new("output-symlink", place, "a file, or nothing yet", found)
                 .hint("a folder of the tree may be a link, a file of it may not"))
         }
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(write_fault(path, 0, &error)),
+        Err(error) if !is_absent(&error) => Err(write_fault(path, 0, &error)),
         _ => Ok(()),
     }
+}
+
+fn is_absent(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
 }
 
 /// Writes and syncs the bytes beside the path; dropped, the part is removed.

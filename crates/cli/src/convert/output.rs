@@ -30,7 +30,9 @@ fn is_empty(root: &Path) -> Result<bool, Fault> {
 }
 
 fn is_of_beginning(entry: &DirEntry) -> bool {
-    entry.file_name().to_string_lossy().starts_with(".run.")
+    let name = entry.file_name();
+    let name = name.to_string_lossy();
+    name.starts_with(".run.") || name.starts_with("..run.")
 }
 
 fn begun_before(files: &RunFiles, record: &RunRecord) -> Result<bool, Fault> {
