@@ -1,6 +1,6 @@
 //! Which version of the format a folder holds, told by what its files begin with.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
 
@@ -62,7 +62,7 @@ pub(super) fn files(folder: &Path) -> Result<Vec<String>, Fault> {
 }
 
 /// The first bytes of a folder's files, by their names.
-fn heads(folder: &Path, names: &[String]) -> Result<HashMap<String, Vec<u8>>, Fault> {
+fn heads(folder: &Path, names: &[String]) -> Result<BTreeMap<String, Vec<u8>>, Fault> {
     let head = |name: &String| {
         let mut head = Vec::new();
         let file = open_file(&folder.join(name), name)?;
