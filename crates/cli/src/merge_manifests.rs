@@ -8,6 +8,7 @@ use std::path::Path;
 
 use occlabel_core::Fault;
 use occlabel_dialects::Annotations;
+use occlabel_disk as disk;
 use occlabel_labels::{
     FileRecord, LabelTree, Manifest, RunFiles, Shards, TreePath, name_of_whole, pretty_json,
     remove_file, write_file,
@@ -181,7 +182,7 @@ fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, Fault> {
     let fault = |found: String| {
         Fault::new("json", path.display().to_string(), "a file as occlabel writes it", found)
     };
-    let bytes = std::fs::read(path).map_err(|error| fault(error.to_string()))?;
+    let bytes = disk::read(path).map_err(|error| fault(error.to_string()))?;
     serde_json::from_slice(&bytes).map_err(|error| fault(error.to_string()))
 }
 

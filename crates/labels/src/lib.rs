@@ -34,10 +34,7 @@
 
 mod atomic;
 mod differences;
-mod disk;
 mod earlier;
-#[cfg(feature = "faults")]
-mod faults;
 mod files;
 mod inputs;
 mod journal;

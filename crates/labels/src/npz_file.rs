@@ -1,10 +1,10 @@
 //! Arrays read from an `.npz` or `.npy` file, whoever wrote it, within bounds.
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
+use occlabel_disk::{self as disk, File};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 use zip::result::ZipError;
@@ -100,7 +100,7 @@ pub fn read_bounded(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Fault> {
 /// A file and its length.
 fn open_bounded(path: &Path, max_bytes: u64) -> Result<(File, u64), Fault> {
     let unreadable = |error| read_fault(path, &error);
-    let file = File::open(path).map_err(unreadable)?;
+    let file = disk::open(path).map_err(unreadable)?;
     let bytes = file.metadata().map_err(unreadable)?.len();
     if bytes > max_bytes {
         let expected = format!("at most {max_bytes} bytes");

@@ -19,6 +19,7 @@ use std::collections::BTreeSet;
 
 use occlabel_core::Fault;
 use occlabel_dialects::Dialect;
+use occlabel_disk as disk;
 use occlabel_labels::{
     Begun, FileRecord, JournalEntry, LabelTree, Manifest, RESUME_DIFFERS, Resume, RunFiles,
     RunRecord, TreePath, begin,
@@ -162,7 +163,7 @@ fn earlier_manifests(job: &Job, main: &Manifest) -> Result<Vec<FileRecord>, Faul
         main.files.iter().filter_map(|file| Some(file.path.as_str().split_once('/')?.0)).collect();
     let paths = folders.into_iter().map(|folder| TreePath::new(format!("{folder}/manifest.json")));
     let paths = paths.collect::<Result<Vec<_>, _>>()?.into_iter();
-    let theirs = paths.filter(|path| !listed(path) && job.tree.place(path).is_file());
+    let theirs = paths.filter(|path| !listed(path) && disk::is_file(&job.tree.place(path)));
     theirs.map(|path| FileRecord::of_file(&job.tree, path)).collect()
 }
 
@@ -173,7 +174,7 @@ fn begin_run(
     findings: &mut Findings,
 ) -> Result<(Begun, Finished), Stop> {
     let files = run_files(job);
-    let earlier = EarlierReport::load(&files.report());
+    let earlier = EarlierReport::load(&files.report())?;
     let mut begun = begin(&files, record, resume(job.args.resume)).map_err(usage_if_differs)?;
     let mut finished = std::mem::take(&mut begun.finished);
     earlier.recall(&mut finished);

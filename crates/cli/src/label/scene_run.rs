@@ -72,6 +72,7 @@ impl SceneRun<'_> {
         let mut done = self.finished_before(finished, findings);
         let _lock = WriterLock::of_scene(&self.job.tree, &self.planned.name)?;
         let scene = self.job.opened.source.load(&self.planned.name)?;
+        self.planned.check_same(&scene)?;
         let mut todo = self.keyframes_to_label(&scene, &done);
         if todo.is_empty() {
             return Ok(done);
