@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use support::{Ended, Label, TestLog, VERSION, files_under, occlabel, report, text};
+use support::{Ended, Label, TestLog, VERSION, files_under, gts_files, occlabel, report, text};
 
 /// What `check --json` says.
 struct Checked {
@@ -243,9 +243,9 @@ fn fault_14_a_mirrored_matrix_is_refused_and_a_rounded_one_is_mended() {
     }
 }
 
-/// Makes every row from a time on later, seconds.
-fn delay(log: &TestLog, from_us: i64, by_us: i64) {
-    log.edit("sample_data", |rows| {
+/// Makes every row of a table from a time on later, microseconds.
+fn delay(log: &TestLog, table: &str, from_us: i64, by_us: i64) {
+    log.edit(table, |rows| {
         for row in rows {
             let time = row["timestamp"].as_i64().expect("a time");
             row["timestamp"] = json!(if time >= from_us { time + by_us } else { time });
@@ -254,10 +254,10 @@ fn delay(log: &TestLog, from_us: i64, by_us: i64) {
 }
 
 #[test]
-fn fault_18_a_gap_is_warned_of_and_listed_and_boxes_do_not_bridge_it() {
+fn fault_18_a_gap_is_warned_of_and_listed_with_both_sweeps() {
     let log = TestLog::nano();
     let sweeps = log.sweeps();
-    delay(&log, sweeps[5]["timestamp"].as_i64().expect("a time"), 2_000_000);
+    delay(&log, "sample_data", sweeps[5]["timestamp"].as_i64().expect("a time"), 2_000_000);
     let found = check(&log).finds(3, "warning", &["sweep-gap"]);
     assert_eq!(found.one("sweep-gap")["found"], "a gap of 2.125 s");
     let listed = warned(&label(&log), "sweep-gap");
@@ -266,6 +266,21 @@ fn fault_18_a_gap_is_warned_of_and_listed_and_boxes_do_not_bridge_it() {
         let token = sweep["token"].as_str().expect("a token");
         assert!(listed[0]["record"].as_str().is_some_and(|record| record.contains(token)));
     }
+}
+
+#[test]
+fn fault_18_boxes_bridge_a_gap_of_max_gap_s_and_no_longer_one() {
+    let log = TestLog::nano();
+    let from_us = log.sweeps()[5]["timestamp"].as_i64().expect("a time");
+    ["sample", "sample_data"].iter().for_each(|table| delay(&log, table, from_us, 2_000_000));
+    let labels = |max_gap_s: &str| {
+        let label = Label::new(&log.root(), &log.beside(max_gap_s)).small();
+        let gap = format!("boxes.max_gap_s={max_gap_s}");
+        label.with(&["--set", &gap, "--set", "boxes.extrapolate_s=0.0"]).run().exits(0);
+        gts_files(&log.beside(max_gap_s))
+    };
+    let short = labels("1.6");
+    assert!(short == labels("2.499") && short != labels("2.5"));
 }
 
 #[test]

@@ -2,11 +2,15 @@
 
 mod support;
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
+use std::time::SystemTime;
 
 use serde_json::{Value, json};
 use support::{
-    Label, TestLog, files_under, gts_files, manifest, nano_spec, occlabel, report, text,
+    Ended, Label, TestLog, files_under, gts_files, manifest, nano_spec, occlabel, program, report,
+    text,
 };
 
 fn label(log: &TestLog) -> Label {
@@ -108,9 +112,9 @@ fn help_says_what_the_program_does() {
     assert!(help.starts_with("Ground truth for 3D semantic occupancy"), "{help}");
 }
 
-/// faults.md: under `--on-error skip` the rest goes on, the report lists it, exit 3.
+/// Under `--on-error skip` the rest goes on, the report lists it, exit 3.
 #[test]
-fn a_hostile_scene_name_costs_that_scene_only() {
+fn fault_36_a_hostile_scene_name_costs_that_scene_only() {
     let log = TestLog::simulated(&nano_spec().with_scenes(2));
     log.edit("scene", |rows| rows[0]["name"] = json!("../../x"));
     label(&log).with(&["--on-error", "skip"]).run().exits(3);
@@ -118,7 +122,7 @@ fn a_hostile_scene_name_costs_that_scene_only() {
 
 /// The same for the name of a label file.
 #[test]
-fn a_hostile_label_name_costs_that_scene_only() {
+fn fault_36_a_hostile_label_name_costs_that_scene_only() {
     let log = TestLog::simulated(&nano_spec().with_scenes(2));
     log.edit("lidarseg", |rows| rows[0]["filename"] = json!("/etc/passwd"));
     label(&log).with(&["--on-error", "skip"]).run().exits(3);
@@ -127,7 +131,7 @@ fn a_hostile_label_name_costs_that_scene_only() {
 /// The same for a sweep that cannot be looked at (a loop of links, a folder without rights).
 #[cfg(unix)]
 #[test]
-fn a_sweep_that_is_a_loop_of_links_is_skipped() {
+fn fault_37_a_sweep_that_is_a_loop_of_links_is_skipped() {
     let log = TestLog::nano();
     let file = log.other_files()[0].clone();
     log.remove(&file);
@@ -135,9 +139,9 @@ fn a_sweep_that_is_a_loop_of_links_is_skipped() {
     label(&log).with(&["--on-error", "skip"]).run().exits(3);
 }
 
-/// faults.md 36: names escaped in logs. U+009B begins a control sequence, and JSON leaves it raw.
+/// Names are escaped in logs. U+009B begins a control sequence, and JSON leaves it raw.
 #[test]
-fn json_messages_escape_c1_controls() {
+fn fault_36_json_messages_escape_c1_controls() {
     let log = TestLog::nano();
     log.edit("category", |rows| {
         let row = rows.iter_mut().find(|row| row["name"] == "vehicle.car").expect("cars");
@@ -154,10 +158,10 @@ fn a_reader_table_that_no_reader_knows_is_refused() {
     label(&log).with(&["--set", "reader.nonsense.key=1"]).run().exits(2).tells(&["reader"]);
 }
 
-/// faults.md 37: output through a symbolic link of a file is refused. The link is removed instead.
+/// Output through a symbolic link of a file is refused. The link is removed instead.
 #[cfg(unix)]
 #[test]
-fn a_link_in_place_of_the_manifest_is_refused() {
+fn fault_37_a_link_in_place_of_the_manifest_is_refused() {
     for name in ["manifest.json", "report.json"] {
         let log = TestLog::nano();
         fs::create_dir_all(log.beside("out")).expect("a folder");
@@ -167,9 +171,9 @@ fn a_link_in_place_of_the_manifest_is_refused() {
     }
 }
 
-/// faults.md 25: an annotation without points is listed in the report.
+/// An annotation without points is listed in the report.
 #[test]
-fn boxes_without_points_are_listed() {
+fn fault_25_boxes_without_points_are_listed() {
     let log = TestLog::nano();
     let token = log.rows("sample_annotation")[0]["token"].clone();
     log.edit("sample_annotation", |rows| rows[0]["translation"] = json!([0.0, 0.0, 90.0]));
@@ -181,9 +185,9 @@ fn boxes_without_points_are_listed() {
     assert!(names.iter().any(|name| text.contains(name)), "{text}");
 }
 
-/// faults.md 6: points that are not finite are counted per sweep.
+/// Points that are not finite are counted per sweep.
 #[test]
-fn points_that_are_not_finite_are_counted_per_sweep() {
+fn fault_06_points_that_are_not_finite_are_counted_per_sweep() {
     let log = TestLog::nano();
     let file = log.other_files()[0].clone();
     log.edit_points(&file, |points| points[0][0] = f32::NAN);
@@ -203,6 +207,47 @@ fn a_failed_run_that_finished_nothing_does_not_stop_the_next() {
     label(&log).run().exits(1);
     fs::write(&file, whole).expect("written");
     label(&log).run().exits(0);
+}
+
+/// Each file below a folder: its bytes, and when it was written.
+fn stamped(root: &Path) -> BTreeMap<String, (Vec<u8>, SystemTime)> {
+    let stamp = |name: &str| fs::metadata(root.join(name)).and_then(|meta| meta.modified());
+    let with_stamp = |(name, bytes): (String, Vec<u8>)| {
+        let time = stamp(&name).expect("a time");
+        (name, (bytes, time))
+    };
+    files_under(root).into_iter().map(with_stamp).collect()
+}
+
+/// docs/reliability.md: inputs are never written, outputs never leave the output's root.
+#[test]
+fn nothing_is_written_but_what_a_line_names() {
+    let log = TestLog::nano();
+    let before = stamped(&log.beside(""));
+    let (root, out, elsewhere) = (log.root(), log.beside("out"), log.beside("elsewhere"));
+    fs::create_dir(&elsewhere).expect("a folder");
+    let input = ["--format", "nuscenes", "--input", text(&root)];
+    let lines: [&[&str]; 9] = [
+        &["check"],
+        &["inspect"],
+        &["label", "--output", text(&out), "--dry-run"],
+        &["label", "--output", text(&out), "--evidence", "--also", "0.8"],
+        &["label", "--output", text(&out), "--evidence", "--also", "0.8", "--resume", "never"],
+        &["verify", text(&out)],
+        &["compare", text(&out), text(&out)],
+        &["view", text(&out), "--output", "../out/page.html"],
+        &["report", text(&out), "--output", "../out/report.html"],
+    ];
+    for line in lines {
+        let input = if line.contains(&text(&out)) && line[0] != "label" { &[][..] } else { &input };
+        let mut command = program();
+        command.args(line).args(input).current_dir(&elsewhere);
+        command.env("TMPDIR", &elsewhere).env("HOME", &elsewhere);
+        Ended::of(command.output().expect("the program starts")).exits(0);
+    }
+    let mut after = stamped(&log.beside(""));
+    after.retain(|name, _| !name.starts_with("out/"));
+    assert!(after == before, "{:?}", after.keys());
 }
 
 /// An empty list of scenes is a broken pipeline, not a wish.

@@ -279,7 +279,7 @@ fn bare_kitti_360(root: &Path) {
     };
     let points = (0..400).flat_map(|i| {
         let (azimuth, range_m) = (i as f32 * 0.1, 4.0 + i as f32 * 0.02);
-        [range_m * azimuth.cos(), range_m * azimuth.sin(), -1.65, 0.5]
+        [range_m * libm::cosf(azimuth), range_m * libm::sinf(azimuth), -1.65, 0.5]
     });
     let points: Vec<u8> = points.flat_map(f32::to_le_bytes).collect();
     let velodyne = "data_3d_raw/drive/velodyne_points";

@@ -1,13 +1,15 @@
-//! The ray kernels on exactly known worlds: on every instruction set of this processor they count what
-//! section 8 of labels.md says, told here ray by ray and voxel by voxel.
+//! The kernels on exactly known worlds: on every instruction set of this processor they count what
+//! section 8 of labels.md says, told here ray by ray and voxel by voxel, and find the voxels of points.
 
 mod ray_oracle;
 
 use std::convert::Infallible;
 
+use nalgebra::Point3;
 use occlabel_aggregate::{Moment, TrackBox, compose};
 use occlabel_core::{
-    AggregatedScene, ClassId, Instant, Keyframe, LIDAR_ORIGIN, Level, RayCounts, SweepHeader,
+    AggregatedScene, BUNDLE, ClassId, GridSpec, Instant, Kernel, Keyframe, LIDAR_ORIGIN, Level,
+    RayCounts, RigidMap, SweepHeader,
 };
 use occlabel_pipeline::{
     Autos, Config, Rules, aggregate_scene, parse_taxonomy, preset, shipped_taxonomy, standing_at,
@@ -36,6 +38,47 @@ fn section_8_every_level_counts_as_the_oracle_does_on_the_crossing() {
 fn section_8_every_level_counts_as_the_oracle_does_on_the_campus() {
     let tally = tally_of("campus", &THIN);
     tally.assert_of(2 * 5);
+}
+
+/// The voxels of points, as `voxelize` finds them.
+struct Flats<'a> {
+    positions: &'a [Point3<f64>],
+    place: &'a RigidMap,
+    spec: &'a GridSpec,
+}
+
+impl Kernel for Flats<'_> {
+    type Output = Vec<Option<usize>>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let mut flats = Vec::with_capacity(self.positions.len());
+        for bundle in self.positions.chunks(BUNDLE) {
+            flats.extend_from_slice(&self.spec.flats_of(self.place, bundle)[..bundle.len()]);
+        }
+        flats
+    }
+}
+
+#[test]
+fn section_7_every_level_finds_the_voxels_that_one_point_after_the_other_gives() {
+    let drive = drive("street", &COARSE);
+    let rules = rules(&drive, "precise");
+    let (aggregated, spec) = (aggregated(&drive, &rules), &rules.spec);
+    let mut inside = 0;
+    for keyframe in &drive.scene().keyframes {
+        let place =
+            &RigidMap::from(&instant(&drive, &aggregated, keyframe, &rules).grid_from_world);
+        for positions in aggregated.background.iter().map(|sweep| &sweep.cloud.positions) {
+            let one_by_one = positions.iter().map(|point| spec.flat_of(&place.apply(point)));
+            let expected: Vec<_> = one_by_one.collect();
+            inside += expected.iter().flatten().count();
+            for level in Level::all() {
+                assert!(level.run(Flats { positions, place, spec }) == expected, "{level:?}");
+            }
+        }
+    }
+    assert!(inside > 10_000, "{inside} points inside");
 }
 
 /// All keyframes of a world, by the rules of two presets.

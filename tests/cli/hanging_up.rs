@@ -41,6 +41,24 @@ fn a_second_signal_ends_at_once_and_the_same_command_goes_on() {
 }
 
 #[test]
+fn an_interrupted_log_is_no_log_and_the_same_command_makes_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = folder.path().join("log");
+    let line = ["simulate", "--world", "street", "--format", "nuscenes", "--output", text(&output)];
+    let mut child = command(&line).stdout(Stdio::null()).spawn().expect("started");
+    while !output.join(".part").exists() && child.try_wait().expect("a state").is_none() {
+        std::thread::yield_now();
+    }
+    signal(&child, "-INT");
+    if child.wait().expect("an end").success() {
+        return eprintln!("skipped: the log was whole before the signal came");
+    }
+    assert!(!output.join("v1.0-sim").exists());
+    command(&line).output().expect("an end");
+    assert!(output.join("v1.0-sim").is_dir() && !output.join(".part").exists());
+}
+
+#[test]
 fn nobody_reading_is_no_fault_of_any_command() {
     let (log, label) = labelled(&[]);
     let (labels, root) = (text(&label.output), log.root());

@@ -83,7 +83,8 @@ fn points_are_counted_exactly_by_what_became_of_them() {
     );
     assert_eq!(total["sweeps"]["read"], log.sweeps().len());
     let size = |row: &Value| log.file(row["filename"].as_str().expect("a name")).metadata();
-    let bytes: u64 = log.sweeps().iter().map(|row| size(row).expect("a file").len()).sum();
+    let rows = [log.sweeps(), log.rows("lidarseg")].concat();
+    let bytes: u64 = rows.iter().map(|row| size(row).expect("a file").len()).sum();
     assert_eq!(total["sweeps"]["file_bytes"], bytes);
 }
 
@@ -133,6 +134,7 @@ fn shards_make_one_report_with_sums_and_the_highest_peaks() {
         "cpu_seconds",
         "peak_memory_bytes",
         "threads",
+        "inputs_mark",
         "host.os",
         "host.arch",
     ]);

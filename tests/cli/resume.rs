@@ -27,7 +27,7 @@ fn a_file_that_went_away_is_made_again() {
 }
 
 #[test]
-fn another_configuration_into_the_same_output_exits_with_2_and_names_the_key() {
+fn fault_40_another_configuration_into_the_same_output_exits_with_2_and_names_the_key() {
     let (log, label) = labelled(&[]);
     let before = files_under(&label.output);
     let other = label.clone().with(&["--set", "states.occupied_min_hits=2"]);
@@ -38,7 +38,7 @@ fn another_configuration_into_the_same_output_exits_with_2_and_names_the_key() {
 }
 
 #[test]
-fn resume_never_starts_anew_and_leaves_foreign_files_alone() {
+fn fault_40_resume_never_starts_anew_and_leaves_foreign_files_alone() {
     let (log, label) = labelled(&["--evidence"]);
     let folder = PathBuf::from(labels_path(&log.keyframes()[0])).with_file_name("");
     let foreign =
@@ -61,7 +61,7 @@ fn resume_never_starts_anew_and_leaves_foreign_files_alone() {
 }
 
 #[test]
-fn resume_always_keeps_what_is_finished() {
+fn fault_40_resume_always_keeps_what_is_finished() {
     let (_log, label) = labelled(&[]);
     let before = times(&label.output.join("gts"));
     let other = label.clone().with(&["--set", "states.occupied_min_hits=2", "--resume", "always"]);

@@ -81,6 +81,7 @@ fn fault_03_four_columns_are_told_not_guessed() {
     let file = &log.other_files()[1];
     drop_ring(&log, file);
     assert_refused(&label(&log), &[file, "looks like 4-column KITTI", "--columns 4"]);
+    assert_skipped(&label_into(&log, "skip"), "sweep-length", &log.keyframes());
 }
 
 #[test]

@@ -14,4 +14,5 @@ mod policy;
 mod poses;
 #[path = "../support/mod.rs"]
 mod support;
+mod table;
 mod times;

@@ -1,5 +1,7 @@
 //! Points that are no returns of the scene (cases 6 to 11).
 
+use serde_json::{Value, json};
+
 use crate::asserts::{arrays, assert_keyframes, dropped, label, label_into, untouched, warnings};
 use crate::support::{Arrays, Point, TestLog, gts_files};
 
@@ -66,6 +68,35 @@ fn fault_07_a_raised_range_clips_far_points_without_overflow() {
     assert_eq!(dropped(&label.output, "far"), 0);
     let far = label_into(&log, "far").with(&["--set", "aggregate.max_range_m=838861"]);
     far.run().exits(2).tells(&["aggregate.max_range_m", "2^20"]);
+}
+
+/// A place on the earth as the distance from its centre, metres.
+const ON_EARTH_M: [f64; 3] = [4_000_000.0, 900_000.0, 4_860_000.0];
+
+#[test]
+fn fault_07_a_drive_in_coordinates_of_the_whole_earth_is_labelled_as_one_near_the_origin() {
+    let (_log, clean) = untouched(&[]);
+    let log = TestLog::nano();
+    for table in ["ego_pose", "sample_annotation"] {
+        log.edit(table, |rows| rows.iter_mut().for_each(move_away));
+    }
+    let label = label(&log);
+    label.run().exits(0).tells_nothing_of("warning");
+    assert_eq!(dropped(&label.output, "far"), dropped(&clean.output, "far"));
+    let (mut same, mut occupied) = (0, 0);
+    for (near, far) in arrays(&log, &clean).iter().zip(&arrays(&log, &label)) {
+        let classes = near.labels.semantics.values().iter().zip(far.labels.semantics.values());
+        same += classes.filter(|(near, far)| near == far).count();
+        occupied += far.evidence.state.values().iter().filter(|state| **state == 2).count();
+    }
+    assert!(same * 1000 >= 3 * 40 * 40 * 8 * 998 && occupied > 1000, "{same}, {occupied} occupied");
+}
+
+fn move_away(row: &mut Value) {
+    for (axis, on_earth_m) in ON_EARTH_M.into_iter().enumerate() {
+        let place_m = row["translation"][axis].as_f64().expect("a place") + on_earth_m;
+        row["translation"][axis] = json!(place_m);
+    }
 }
 
 #[test]

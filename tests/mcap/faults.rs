@@ -9,11 +9,14 @@ use serde_json::{Value, json};
 
 use crate::drive::{Drive, rewrite};
 use crate::support::{
-    Ended, Label, TestLog, files_under, gts_files, manifest, occlabel, report, text,
+    Ended, SMALL, TestLog, files_under, gts_files, manifest, occlabel, occlabel_within, report,
+    text,
 };
 
 /// What is too large is refused at once; this leaves room for a slow machine.
 const SOON: Duration = Duration::from_secs(5);
+/// All the address space that the program may take: less than what is declared.
+const MEMORY_KIB: u32 = 1_000_000;
 const SMALL_CHUNK: u64 = 20_000;
 
 fn keyframes(output: &Path) -> Value {
@@ -110,11 +113,12 @@ fn unpacked_size_at(bytes: &[u8]) -> usize {
     }
 }
 
-/// Labels under a bound on the address space, and asserts that it is refused soon.
+/// Labels in less memory than what is declared, and asserts that it is refused soon.
 #[track_caller]
-fn refused_soon(label: impl FnOnce() -> Ended) -> Ended {
+fn refused_soon(format: &str, log: &Path, output: &Path, args: &[&str]) -> Ended {
     let begun = Instant::now();
-    let ended = label().exits(1);
+    let line = ["label", "--format", format, "--input", text(log), "--output", text(output)];
+    let ended = occlabel_within(MEMORY_KIB, &[&line[..], &SMALL, args].concat()).exits(1);
     assert!(begun.elapsed() < SOON, "{:?}", begun.elapsed());
     ended
 }
@@ -129,11 +133,11 @@ fn fault_34_a_chunk_that_declares_too_much_is_refused_at_once() {
         let at = unpacked_size_at(&bytes);
         bytes[at..at + 8].copy_from_slice(&(1_u64 << 40).to_le_bytes());
         fs::write(&file, &bytes).expect("written");
-        let ended = refused_soon(|| drive.label("mcap", &log, "a", &[]));
+        let ended = refused_soon("mcap", &log, &drive.path("a"), &[]);
         ended.tells(&["at byte", "at most 1073741824 bytes", "found 1099511627776"]);
         bytes[at..at + 8].copy_from_slice(&(1_u64 << 30).to_le_bytes());
         fs::write(&file, &bytes).expect("written");
-        let ended = refused_soon(|| drive.label("mcap", &log, "a", &[]));
+        let ended = refused_soon("mcap", &log, &drive.path("a"), &[]);
         ended.tells(&["at byte", "fewer than the 1073741824 bytes"]);
         assert_nothing_written(&drive.path("a"));
     }
@@ -144,7 +148,7 @@ fn fault_34_the_cap_is_a_key() {
     let drive = Drive::new();
     let log = drive.simulate("mcap");
     let small = ["--set", "reader.mcap.max_record_bytes=1000"];
-    let ended = refused_soon(|| drive.label("mcap", &log, "a", &small));
+    let ended = refused_soon("mcap", &log, &drive.path("a"), &small);
     ended.tells(&["at most 1000 bytes", "`reader.mcap.max_record_bytes`"]);
     let zero = ["--set", "reader.mcap.max_record_bytes=0"];
     drive.label("mcap", &log, "a", &zero).exits(2).tells(&["reader.mcap.max_record_bytes"]);
@@ -160,9 +164,9 @@ fn fault_34_a_body_mask_that_declares_too_much_is_refused_at_once() {
         rows.iter_mut().for_each(|row| row["mask"] = json!("mask.png"));
     });
     fs::write(log.file("mask.png"), HEAD).expect("written");
-    let label = Label::new(&log.root(), &log.beside("out")).small();
-    refused_soon(|| label.run()).tells(&["mask.png", "expected a mask of"]);
-    assert_nothing_written(&label.output);
+    let ended = refused_soon("nuscenes", &log.root(), &log.beside("out"), &[]);
+    ended.tells(&["mask.png", "expected a mask of"]);
+    assert_nothing_written(&log.beside("out"));
 }
 
 #[test]
@@ -173,6 +177,6 @@ fn fault_34_a_tfrecord_that_declares_too_much_is_refused_at_once() {
     let log = drive.path("waymo");
     fs::create_dir(&log).expect("a folder");
     fs::write(log.join("a.tfrecord"), HEAD).expect("written");
-    let ended = refused_soon(|| drive.label("waymo", &log, "a", &[]));
+    let ended = refused_soon("waymo", &log, &drive.path("a"), &[]);
     ended.tells(&["a.tfrecord", "at byte 0", "at most 1073741824", "found 1099511627776"]);
 }

@@ -10,7 +10,9 @@ mod tree;
 
 pub(crate) use documented::Documented;
 pub(crate) use npz_dates::npz_dates;
-pub(crate) use program::{Ended, Label, SMALL, labelled_drive, occlabel, text};
+pub(crate) use program::{
+    Ended, Label, SMALL, labelled_drive, occlabel, occlabel_within, program, text,
+};
 pub(crate) use test_log::{NAN, Point, SCENE, TestLog, VERSION, copy, nano_spec};
 pub(crate) use tree::{
     Arrays, files_under, gts_files, leftovers, manifest, read_arrays, report, tree_hash,

@@ -37,6 +37,14 @@ pub(crate) fn occlabel(args: &[&str]) -> Ended {
     Ended::of(program().args(args).output().expect("the program starts"))
 }
 
+/// Runs the program with a bound on its address space, where a shell can set one.
+pub(crate) fn occlabel_within(kib: u32, args: &[&str]) -> Ended {
+    let mut command = Command::new("sh");
+    let bounded = format!("ulimit -v {kib} 2>/dev/null; exec \"$@\"");
+    command.args(["-c", &bounded, "sh"]).arg(program().get_program()).args(args);
+    Ended::of(command.output().expect("the program starts"))
+}
+
 /// A path as an argument.
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().expect("a path in UTF-8")
@@ -62,8 +70,10 @@ pub(crate) fn labelled_drive(
     labels
 }
 
-fn program() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_occlabel"))
+/// The program as it was built with the tests, or the build that `OCCLABEL_BINARY` names.
+pub(crate) fn program() -> Command {
+    let built = || env!("CARGO_BIN_EXE_occlabel").into();
+    Command::new(std::env::var_os("OCCLABEL_BINARY").unwrap_or_else(built))
 }
 
 impl Label {

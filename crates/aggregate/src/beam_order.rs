@@ -82,8 +82,8 @@ mod tests {
                 let elevation = (-30.67 + 41.34 * beam as f64 / 31.0).to_radians();
                 let turn = (azimuth as f64 + 0.5) / AZIMUTHS as f64 * std::f64::consts::TAU;
                 let range_m = 2.0 + (place * 7919 % 1000) as f64 * 0.1;
-                let (sine, cosine) = (turn - std::f64::consts::FRAC_PI_2).sin_cos();
-                let (height, flat) = elevation.sin_cos();
+                let (sine, cosine) = libm::sincos(turn - std::f64::consts::FRAC_PI_2);
+                let (height, flat) = libm::sincos(elevation);
                 let ray = Vector3::new(flat * cosine, flat * sine, height);
                 let position = origin + ray * range_m;
                 cloud.push(position.map(|c| f64::from(c as f32)), place, 0);

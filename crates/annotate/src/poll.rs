@@ -235,9 +235,9 @@ mod tests {
         let setting =
             (points, 1_usize..MANY, -9..9_i32, prop_oneof![Just(f64::INFINITY), 0.0..2.0_f64]);
         proptest!(ProptestConfig::with_cases(1_000), |((points, k, scale, reach) in setting)| {
-            let scaled = |p: &Point3<f64>| p * 10_f64.powi(scale);
+            let scaled = |p: &Point3<f64>| p * libm::exp10(f64::from(scale));
             let points: Vec<_> = points.iter().map(|(p, class)| (scaled(p), *class)).collect();
-            let reach_squared = reach * 10_f64.powi(2 * scale);
+            let reach_squared = reach * libm::exp10(f64::from(2 * scale));
             let places: Vec<_> = points.iter().take(PLACES).map(|(p, _)| p * 0.7).collect();
             let bounds = Bounds::of(places.iter());
             let poll = Poll::new(&points, &bounds, k, reach_squared).unwrap();

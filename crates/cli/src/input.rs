@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_dialects::{Dialect, DialectGrid};
+use occlabel_disk as disk;
 use occlabel_logs::{
     Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions, PointColumns,
     QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource,
@@ -247,7 +248,7 @@ fn file_name(file: &str) -> String {
 }
 
 fn read_text(path: &Path) -> Result<String, Fault> {
-    std::fs::read_to_string(path).map_err(|error| {
+    disk::read_to_string(path).map_err(|error| {
         Fault::new(
             "config-file",
             path.display().to_string(),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use occlabel_core::{ColorSet, Fault, Palette, Pose, Timestamp};
 use occlabel_dialects::{KeyframeKey, LabelSet, Wanted};
+use occlabel_disk as disk;
 use occlabel_labels::{Manifest, PoseRecord, SceneRecord, read_evidence};
 use occlabel_view::{ShownEvidence, ShownKeyframe, ShownScene, ShownTrack};
 
@@ -22,7 +23,7 @@ impl ShownSet {
     /// # Errors
     /// If there are no labels, or of no one dialect.
     pub(crate) fn open(folder: &Path, dialect: Option<&str>) -> Result<Self, Fault> {
-        if folder.is_file() {
+        if disk::is_file(folder) {
             let place = folder.display().to_string();
             let fault = Fault::new("label-set", place, "a folder of labels", "a file");
             return Err(fault.hint("give the folder that it belongs to"));
@@ -175,7 +176,7 @@ impl ShownSet {
 
 /// What is said of a folder that a run has begun to write, and has finished no keyframe in.
 fn with_run(fault: Fault, folder: &Path) -> Fault {
-    if !["dialect", "label-set"].contains(&fault.rule) || !folder.join("run.json").is_file() {
+    if !["dialect", "label-set"].contains(&fault.rule) || !disk::is_file(&folder.join("run.json")) {
         return fault;
     }
     let found = "a run that has finished none yet";

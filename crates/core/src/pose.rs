@@ -66,6 +66,16 @@ mod tests {
     }
 
     #[test]
+    fn section_12_the_turns_of_nalgebra_are_those_of_libm() {
+        for step in 0..10_000 {
+            let angle = f64::from(step) * 1e-3;
+            let turn = yaw(angle);
+            assert_eq!((turn.k, turn.w), libm::sincos(angle / 2.0));
+            assert_eq!(turn.angle(), 2.0 * libm::atan2(turn.imag().norm(), turn.w.abs()));
+        }
+    }
+
+    #[test]
     fn section_3_slerp_ends_are_the_ends_and_the_middle_is_half_way() {
         let (a, b) = (yaw(0.2), yaw(1.4));
         assert!(slerp(&a, &b, 0.0).angle_to(&a) < 1e-12);

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, GridSpec, VoxelGrid};
+use occlabel_disk as disk;
 use occlabel_labels::{NpzFile, NumberArray, NumberType, read_bounded};
 
 use crate::values::{self, Refusal};
@@ -93,7 +94,7 @@ impl Found<'_> {
     fn voxel_files(&self, arrays: &[Array]) -> Result<KeyframeLabels, Fault> {
         self.collect(arrays, |array| {
             let place = (self.places)(&array.name);
-            match place.exists() {
+            match disk::exists(&place) {
                 true => self.voxel_file(array, &place).map(Some),
                 false => Ok(None),
             }

@@ -39,7 +39,7 @@ fn candidates(folder: &Path) -> Result<Vec<Candidate>, Fault> {
         if let Some((start, found)) = find(folder, &dialect, 1)? {
             let read = LabelSet::of_found(folder, dialect.clone(), start, found).and_then(first);
             let pattern = PathPattern::new(dialect.layout.path(), "");
-            let doubts = (pattern.contradictions(folder, start), *read.as_ref().unwrap_or(&true));
+            let doubts = (pattern.contradictions(folder, start)?, *read.as_ref().unwrap_or(&true));
             candidates.push(Candidate { dialect, start, doubts, fault: read.err() });
         }
     }

@@ -2,6 +2,7 @@
 //! of the voxels of which something holds.
 
 use occlabel_core::{Fault, VoxelGrid};
+use occlabel_disk as disk;
 use occlabel_labels::{NumberArray, read_npy};
 
 use crate::decode::{Found, fault};
@@ -20,7 +21,7 @@ impl Found<'_> {
         let mut rows = Vec::new();
         for array in arrays {
             let place = (self.places)(&array.name);
-            if !array.is_required() && !place.exists() {
+            if !array.is_required() && !disk::exists(&place) {
                 continue;
             }
             let numbers = read_npy(&place, self.spec.len() as u64 * MAX_ROW_BYTES)?;

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, GridSpec, VoxelGrid};
+use occlabel_disk as disk;
 use occlabel_labels::{Manifest, NpzFile};
 
 use crate::decode::fault;
@@ -176,7 +177,7 @@ impl LabelSet {
 
     /// Whether a keyframe of our own trees has its evidence beside it.
     pub fn has_evidence(&self, key: &KeyframeKey) -> bool {
-        self.is_ours && self.evidence(key).is_file()
+        self.is_ours && disk::is_file(&self.evidence(key))
     }
 
     /// Where the file of an array stands; arrays that share a file have one place.
@@ -234,7 +235,7 @@ pub(crate) fn find(
     let pattern = PathPattern::new(layout.path(), layout.semantics_name());
     for start in 0..=pattern.folders() {
         let mut found = Vec::new();
-        let outer = pattern.filling_of(folder, start);
+        let outer = pattern.filling_of(folder, start)?;
         let inner = pattern.from(start);
         let _ = inner.walk(folder, &outer, layout.except(), &mut |filling| {
             found.push(filling);

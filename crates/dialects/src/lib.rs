@@ -36,6 +36,8 @@ mod concepts;
 mod decode;
 pub mod describe;
 mod dialect;
+#[cfg(any(test, fuzzing))]
+pub mod doors;
 mod encode;
 mod guess;
 mod indices;

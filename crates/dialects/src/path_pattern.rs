@@ -1,10 +1,11 @@
 //! Where the files of a keyframe stand, and back: which keyframe a file belongs to.
 
-use std::fs;
+use std::io::{self, ErrorKind};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_labels::TreePath;
 
 /// A path with holes: `{scene}`, `{token}`, `{name}` of an array, and `{split}`, a folder of any name
@@ -55,23 +56,23 @@ impl PathPattern {
     }
 
     /// What the names of the last folders of a place say of the holes before `start`.
-    pub(crate) fn filling_of(&self, place: &Path, start: usize) -> Filling {
-        let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
+    pub(crate) fn filling_of(&self, place: &Path, start: usize) -> Result<Filling, Fault> {
+        let place = full(place)?;
         let mut filling = Filling::default();
         let names = place.iter().rev().map(|name| name.to_string_lossy());
         for (part, name) in self.0[..start].iter().rev().zip(names) {
             let caught = part.caught(&name).unwrap_or(&name);
             filling.fill(part.hole, caught);
         }
-        filling
+        Ok(filling)
     }
 
     /// How many of the folders before `start` are called otherwise than the last of a place.
-    pub(crate) fn contradictions(&self, place: &Path, start: usize) -> usize {
-        let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
+    pub(crate) fn contradictions(&self, place: &Path, start: usize) -> Result<usize, Fault> {
+        let place = full(place)?;
         let names = place.iter().rev().map(|name| name.to_string_lossy());
         let pairs = self.0[..start].iter().rev().zip(names);
-        pairs.filter(|(part, name)| part.caught(name).is_none()).count()
+        Ok(pairs.filter(|(part, name)| part.caught(name).is_none()).count())
     }
 
     /// Calls for each file that fits, in order of names; symbolic links are followed.
@@ -89,9 +90,11 @@ impl PathPattern {
             let place = root.join(&name);
             let flow = match rest {
                 [] if except.is_some_and(|end| name.ends_with(end)) => ControlFlow::Continue(()),
-                [] if place.is_file() => visit(filling),
+                [] if disk::is_file(&place) => visit(filling),
                 [] => ControlFlow::Continue(()),
-                _ if place.is_dir() => Self(rest.to_vec()).walk(&place, &filling, except, visit)?,
+                _ if disk::is_dir(&place) => {
+                    Self(rest.to_vec()).walk(&place, &filling, except, visit)?
+                }
                 _ => ControlFlow::Continue(()),
             };
             if flow.is_break() {
@@ -120,6 +123,18 @@ impl PathPattern {
             None => TreePath::new(names.join("/")),
         }
     }
+}
+
+/// A folder's path without symbolic links; as it is written, if there is no folder.
+fn full(place: &Path) -> Result<PathBuf, Fault> {
+    match disk::canonicalize(place) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(place.to_owned()),
+        full => full.map_err(|error| unreadable(place, &error)),
+    }
+}
+
+fn unreadable(folder: &Path, error: &io::Error) -> Fault {
+    Fault::new("read", folder.display().to_string(), "to read this folder", error.to_string())
 }
 
 impl Part {
@@ -154,10 +169,7 @@ impl Part {
         if self.hole.is_none() {
             return Ok(vec![self.before.clone()]);
         }
-        let entries = fs::read_dir(root).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-        let entries = entries.map_err(|error| {
-            Fault::new("read", root.display().to_string(), "to read this folder", error.to_string())
-        })?;
+        let entries = disk::list(root).map_err(|error| unreadable(root, &error))?;
         let names = entries.iter().filter_map(|entry| entry.file_name().into_string().ok());
         let fits = |name: &String| !name.starts_with('.') && self.caught(name).is_some();
         let mut names: Vec<_> = names.filter(fits).collect();

@@ -114,7 +114,7 @@ fn rings(height_m: f64) -> Vec<HeldOutRay> {
     let ring = |radius: f64| {
         (0..90).map(move |step| {
             let angle = f64::from(step) * std::f64::consts::TAU / 90.0 + 0.01;
-            let point = [radius * angle.cos(), radius * angle.sin(), height_m];
+            let point = [radius * libm::cos(angle), radius * libm::sin(angle), height_m];
             ray([0.0, 0.0, SENSOR_M], point)
         })
     };

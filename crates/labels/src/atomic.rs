@@ -7,14 +7,13 @@
 //! On any error the part is removed. What a killed process left behind goes when the same file is
 //! written again.
 
-use std::fs::{File, OpenOptions};
+use std::fs::OpenOptions;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
-use tempfile::{Builder, NamedTempFile};
-
-use crate::disk;
+use occlabel_disk::{self as disk, File, Part};
+use tempfile::Builder;
 
 /// Ends the name of a file that is not whole yet.
 const PART: &str = ".part";
@@ -28,8 +27,8 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
     refuse_symlink(path)?;
     remove_leftovers(path)
         .and_then(|()| write_part(path, bytes))
-        .and_then(|part| disk::rename(part, path))
-        .and_then(|_| sync_folder_of(path))
+        .and_then(|part| part.rename(path))
+        .and_then(|()| sync_folder_of(path))
         .map_err(|error| write_fault(path, bytes.len(), &error))
 }
 
@@ -41,20 +40,20 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
 /// symbolic link.
 pub fn write_pieces<E: From<Fault>>(
     path: &Path,
-    write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
+    write: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), E>,
 ) -> Result<(), E> {
     refuse_symlink(path)?;
     let begun = remove_leftovers(path).and_then(|()| begin_part(path));
-    let part = begun.map_err(|error| write_fault(path, 0, &error))?;
-    let mut pieces = BufWriter::new(part.as_file());
+    let mut part = begun.map_err(|error| write_fault(path, 0, &error))?;
+    let mut pieces = BufWriter::new(part.file());
     write(&mut pieces)?;
     let flushed = pieces.flush();
     drop(pieces);
-    let bytes = part.as_file().metadata().map_or(0, |meta| meta.len() as usize);
-    let whole = flushed.and_then(|()| disk::sync(part.as_file()));
+    let bytes = part.file().metadata().map_or(0, |meta| meta.len() as usize);
+    let whole = flushed.and_then(|()| disk::sync(part.file()));
     whole
-        .and_then(|()| disk::rename(part, path))
-        .and_then(|_| sync_folder_of(path))
+        .and_then(|()| part.rename(path))
+        .and_then(|()| sync_folder_of(path))
         .map_err(|error| write_fault(path, bytes, &error).into())
 }
 
@@ -64,8 +63,8 @@ pub fn write_pieces<E: From<Fault>>(
 /// # Errors
 /// If it cannot be written.
 pub(crate) fn create_exclusive(path: &Path, bytes: &[u8]) -> Result<bool, Fault> {
-    let created = write_part(path, bytes).and_then(|part| match disk::rename_new(part, path) {
-        Ok(_) => sync_folder_of(path).map(|()| true),
+    let created = write_part(path, bytes).and_then(|part| match part.rename_new(path) {
+        Ok(()) => sync_folder_of(path).map(|()| true),
         Err(error) if matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) => {
             Ok(false)
         }
@@ -74,19 +73,32 @@ pub(crate) fn create_exclusive(path: &Path, bytes: &[u8]) -> Result<bool, Fault>
     created.map_err(|error| write_fault(path, bytes.len(), &error))
 }
 
+/// Replaces a file by its new contents. `false` if another, who has it now, removed our part as a
+/// leftover.
+///
+/// # Errors
+/// If it cannot be written.
+pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<bool, Fault> {
+    let replaced = write_part(path, bytes).and_then(|part| match part.rename(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        renamed => renamed.and_then(|()| sync_folder_of(path)).map(|()| true),
+    });
+    replaced.map_err(|error| write_fault(path, bytes.len(), &error))
+}
+
 /// Creates a folder and those above it. One that is a symbolic link to a folder counts as there.
 ///
 /// # Errors
 /// If it cannot be created.
 pub fn create_dir(path: &Path) -> Result<(), Fault> {
-    if path.is_dir() {
+    if disk::is_dir(path) {
         return Ok(());
     }
     if path.parent().is_some_and(|above| !above.as_os_str().is_empty()) {
         create_dir(folder_of(path))?;
     }
     match disk::create_dir(path) {
-        Err(error) if error.kind() != ErrorKind::AlreadyExists || !path.is_dir() => Err(error),
+        Err(error) if error.kind() != ErrorKind::AlreadyExists || !disk::is_dir(path) => Err(error),
         _ => sync_folder_of(path),
     }
     .map_err(|error| {
@@ -143,7 +155,7 @@ impl Appender {
 
     /// Appends a line. If that fails, what was written of it is cut off again.
     pub(crate) fn append(&mut self, line: &[u8]) -> Result<(), Fault> {
-        match disk::write(&mut self.file, line).and_then(|()| disk::sync(&self.file)) {
+        match self.file.write_all(line).and_then(|()| disk::sync(&self.file)) {
             Ok(()) => {
                 self.bytes += line.len() as u64;
                 Ok(())
@@ -158,33 +170,38 @@ impl Appender {
 
 /// Refuses a path whose last part is a symbolic link.
 pub(crate) fn refuse_symlink(path: &Path) -> Result<(), Fault> {
-    match disk::metadata(path) {
+    match disk::symlink_metadata(path) {
         Ok(meta) if meta.is_symlink() => {
             let place = path.display().to_string();
             let found = "a symbolic link";
             Err(Fault::new("output-symlink", place, "a file, or nothing yet", found)
                 .hint("a folder of the tree may be a link, a file of it may not"))
         }
+        Err(error) if !is_absent(&error) => Err(write_fault(path, 0, &error)),
         _ => Ok(()),
     }
 }
 
+fn is_absent(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
+}
+
 /// Writes and syncs the bytes beside the path; dropped, the part is removed.
-fn write_part(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
+fn write_part(path: &Path, bytes: &[u8]) -> io::Result<Part> {
     let mut part = begin_part(path)?;
-    disk::write(&mut part, bytes)?;
-    disk::sync(part.as_file())?;
+    part.file().write_all(bytes)?;
+    disk::sync(part.file())?;
     Ok(part)
 }
 
 /// An empty file beside the path; dropped, it is removed.
-fn begin_part(path: &Path) -> io::Result<NamedTempFile> {
+fn begin_part(path: &Path) -> io::Result<Part> {
     let prefix = part_prefix(path);
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(PART);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    disk::create_part(&builder, folder_of(path))
+    Part::create(&builder, folder_of(path))
 }
 
 /// Removes what a killed process left of the same file. A file has one writer at a time: the locks
@@ -195,7 +212,10 @@ pub(crate) fn remove_leftovers(path: &Path) -> io::Result<()> {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if name.starts_with(&prefix) && name.ends_with(PART) {
-            let _ = disk::remove_file(&entry.path());
+            match disk::remove_file(&entry.path()) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
         }
     }
     Ok(())

@@ -28,7 +28,7 @@ impl Earlier {
             run: json::read(&files.run())?,
             journal: journal::read(&files.journal())?,
             manifest: Manifest::load(&files.manifest())?,
-            inputs_mark: reported_mark(files),
+            inputs_mark: reported_mark(files)?,
         })
     }
 
@@ -116,9 +116,11 @@ pub(crate) fn mark_report(report: &mut Value, run: &RunRecord) {
     }
 }
 
-fn reported_mark(files: &RunFiles) -> Option<String> {
-    let report: Value = json::read(&files.report()).ok()??;
-    Some(report.get(INPUTS_MARK)?.as_str()?.to_owned())
+/// None if there is no report, or none of ours.
+fn reported_mark(files: &RunFiles) -> Result<Option<String>, Fault> {
+    let bytes = json::read_bounded(&files.report())?.unwrap_or_default();
+    let report: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+    Ok(report.get(INPUTS_MARK).and_then(Value::as_str).map(str::to_owned))
 }
 
 /// The keyframes of a manifest, each with its files.

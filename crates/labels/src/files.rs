@@ -4,9 +4,10 @@ use std::io;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use serde::{Deserialize, Serialize};
 
-use crate::{LabelTree, TreePath, disk};
+use crate::{LabelTree, TreePath};
 
 /// A finished file of a tree.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -56,7 +57,7 @@ impl FileRecord {
 
     /// Whether a file of the recorded length stands there. (It is not read.)
     pub fn stands(&self, tree: &LabelTree) -> bool {
-        let meta = disk::metadata(&tree.place(&self.path));
+        let meta = disk::symlink_metadata(&tree.place(&self.path));
         meta.is_ok_and(|meta| meta.is_file() && meta.len() == self.bytes)
     }
 }

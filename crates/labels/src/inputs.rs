@@ -1,11 +1,11 @@
 //! Fingerprint of what a run reads.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use serde::{Deserialize, Serialize};
 
 use crate::files::{hash_file, read_fault};
@@ -53,7 +53,7 @@ impl InputRecord {
     pub fn of_sweep(root: &Path, path: impl Into<String>) -> Result<Self, Fault> {
         let path = path.into();
         let place = root.join(&path);
-        let meta = fs::metadata(&place).and_then(|meta| Ok((meta.len(), meta.modified()?)));
+        let meta = disk::metadata(&place).and_then(|meta| Ok((meta.len(), meta.modified()?)));
         let (bytes, modified) = meta.map_err(|error| read_fault(&place, &error))?;
         let since = modified.duration_since(UNIX_EPOCH).unwrap_or_default();
         Ok(Self { path, bytes, mark: InputMark::MtimeNs(since.as_nanos() as i64), scene: None })
@@ -116,6 +116,7 @@ fn hash(mut inputs: Vec<&InputRecord>) -> String {
 mod tests {
     use super::*;
     use serde_json::json;
+    use std::fs;
 
     #[test]
     fn tables_are_hashed_and_sweeps_are_timed() {

@@ -4,10 +4,10 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::disk;
 use crate::files::read_fault;
 
 /// The largest JSON file that is read: a manifest of a million keyframes has about 300 MB.

@@ -34,10 +34,9 @@
 
 mod atomic;
 mod differences;
-mod disk;
+#[cfg(any(test, fuzzing))]
+pub mod doors;
 mod earlier;
-#[cfg(feature = "faults")]
-mod faults;
 mod files;
 mod inputs;
 mod journal;

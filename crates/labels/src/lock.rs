@@ -1,14 +1,15 @@
 //! One writer at a time: a scene's `.lock` and a run's hold the writer's process.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
-use crate::atomic::{create_dir, create_exclusive, remove_file, remove_leftovers};
+use crate::atomic::{create_dir, create_exclusive, remove_file, remove_leftovers, replace};
 use crate::files::read_fault;
-use crate::{LabelTree, TreePath, disk};
+use crate::{LabelTree, TreePath};
 
 /// How often a lock that vanishes under our eyes is tried again.
 const TRIES: usize = 3;
@@ -48,7 +49,7 @@ impl WriterLock {
 
 impl Drop for WriterLock {
     fn drop(&mut self) {
-        if fs::read_to_string(&self.path).is_ok_and(|text| text == self.owner.text()) {
+        if disk::read_to_string(&self.path).is_ok_and(|text| text == self.owner.text()) {
             let _ = remove_file(&self.path);
         }
     }
@@ -102,20 +103,26 @@ fn began(process: u32) -> Option<u64> {
     after_name.split_whitespace().nth(19)?.parse().ok()
 }
 
-/// Puts us into a lock whose process is gone. `false` if the lock is gone too, by now.
+/// Puts us in place of a lock whose process is gone. `false` if it is another's lock by now, or none.
 ///
-/// The lock's file is itself locked meanwhile, so that of two who find it stale one is refused.
+/// The lock's file is itself locked meanwhile, so that one at a time replaces it; who comes next finds
+/// another file in its place.
 fn take_over(path: &Path, us: &Owner) -> Result<bool, Fault> {
     let opened = disk::open_by(OpenOptions::new().read(true).write(true), path);
-    let file = match opened {
+    let mut file = match opened {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
         opened => opened.map_err(|error| read_fault(path, &error))?,
     };
-    file.lock().map_err(|error| read_fault(path, &error))?;
-    let text = io::read_to_string(&file).map_err(|error| read_fault(path, &error))?;
+    let unreadable = |error: io::Error| read_fault(path, &error);
+    file.lock().map_err(unreadable)?;
+    let text = io::read_to_string(&mut file).map_err(unreadable)?;
     refuse_if_held(path, &text)?;
-    overwrite(&file, &us.text()).map_err(|error| read_fault(path, &error))?;
-    Ok(fs::read_to_string(path).is_ok_and(|text| text == us.text()))
+    match disk::read_to_string(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(unreadable(error)),
+        Ok(now) if now != text => Ok(false),
+        Ok(_) => replace(path, us.text().as_bytes()),
+    }
 }
 
 fn refuse_if_held(path: &Path, text: &str) -> Result<(), Fault> {
@@ -130,13 +137,6 @@ fn refuse_if_held(path: &Path, text: &str) -> Result<(), Fault> {
         None => Err(Fault::new("lock", place, "the id of a process", format!("`{text}`"))
             .hint("remove this file if no other occlabel is at work")),
     }
-}
-
-fn overwrite(mut file: &File, text: &str) -> io::Result<()> {
-    io::Seek::rewind(&mut file)?;
-    file.set_len(0)?;
-    disk::write(&mut file, text.as_bytes())?;
-    disk::sync(file)
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Arrays read from an `.npz` or `.npy` file, whoever wrote it, within bounds.
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
+use occlabel_disk::{self as disk, File};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 use zip::result::ZipError;
@@ -56,11 +56,10 @@ impl NpzFile {
     /// The header of an array; `None` if there is no such array.
     ///
     /// # Errors
-    /// If it cannot be read, or says of other things than plain numbers.
+    /// If it cannot be read, says of other things than plain numbers, or of more than there are.
     pub fn header(&mut self, name: &str) -> Result<Option<NpyHeader>, Fault> {
         let Self { path, zip } = self;
-        let header = find(zip, name)
-            .and_then(|entry| entry.map(|mut entry| NpyHeader::read(&mut entry)).transpose());
+        let header = find(zip, name).and_then(|entry| entry.map(read_header).transpose());
         header.map_err(|refusal| fault(path, Some(name), refusal))
     }
 
@@ -100,7 +99,7 @@ pub fn read_bounded(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Fault> {
 /// A file and its length.
 fn open_bounded(path: &Path, max_bytes: u64) -> Result<(File, u64), Fault> {
     let unreadable = |error| read_fault(path, &error);
-    let file = File::open(path).map_err(unreadable)?;
+    let file = disk::open(path).map_err(unreadable)?;
     let bytes = file.metadata().map_err(unreadable)?.len();
     if bytes > max_bytes {
         let expected = format!("at most {max_bytes} bytes");
@@ -118,13 +117,27 @@ fn find<'a>(zip: &'a mut Zip, name: &str) -> Result<Option<ZipFile<'a, BufReader
     }
 }
 
+fn read_header(mut entry: ZipFile<'_, BufReader<File>>) -> Result<NpyHeader, Refusal> {
+    let max_bytes = most_bytes(&entry);
+    let header = NpyHeader::read(&mut entry)?;
+    match header.value_bytes().is_some_and(|bytes| bytes <= max_bytes) {
+        true => Ok(header),
+        false => Err((format!("numbers of {max_bytes} bytes"), format!("{:?}", header.shape))),
+    }
+}
+
+/// What an entry can unpack to at most.
+fn most_bytes(entry: &ZipFile<'_, BufReader<File>>) -> u64 {
+    entry.size().min(entry.compressed_size().saturating_mul(MAX_INFLATION))
+}
+
 fn read_entry(entry: ZipFile<'_, BufReader<File>>, max_bytes: u64) -> Result<NumberArray, Refusal> {
     let max = max_bytes.saturating_add(MAX_HEADER_BYTES);
     if entry.size() > max {
         let found = format!("{} bytes declared", entry.size());
         return Err((format!("at most {max} bytes"), found));
     }
-    let max_bytes = entry.size().min(entry.compressed_size().saturating_mul(MAX_INFLATION));
+    let max_bytes = most_bytes(&entry);
     // One byte more than there may be, so that the sum over all of them is checked.
     NumberArray::read(entry.take(max + 1), max_bytes)
 }
@@ -134,5 +147,33 @@ fn fault(path: &Path, name: Option<&str>, (expected, found): Refusal) -> Fault {
     match name {
         Some(name) => fault.record(name),
         None => fault,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use zip::ZipWriter;
+    use zip::write::SimpleFileOptions;
+
+    use super::*;
+
+    #[test]
+    fn fault_34_a_header_of_more_numbers_than_its_entry_holds_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.npz");
+        let sound = crate::NumberArray::new(&[9], &[1_u8; 9]).to_npy();
+        let mut giant = crate::NumberArray::new(&[999], &[1_u8; 999]).to_npy();
+        giant.truncate(giant.len() - 990);
+        let header = |npy: &[u8]| {
+            let mut writer = ZipWriter::new(std::fs::File::create(&path).unwrap());
+            writer.start_file("a.npy", SimpleFileOptions::default()).unwrap();
+            writer.write_all(npy).unwrap();
+            writer.finish().unwrap();
+            NpzFile::open(&path, 1 << 12).unwrap().header("a")
+        };
+        assert_eq!(header(&sound).unwrap().unwrap().shape, [9]);
+        assert_eq!(header(&giant).unwrap_err().found, "[999]");
     }
 }

@@ -248,10 +248,10 @@ fn each<const N: usize, T>(bytes: &[u8], number: impl Fn([u8; N]) -> T) -> Vec<T
 fn half(bits: u16) -> f64 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff) / 1024.0);
     let size = match exponent {
-        0 => fraction * 2.0_f64.powi(-14),
+        0 => libm::ldexp(fraction, -14),
         31 if fraction == 0.0 => f64::INFINITY,
         31 => f64::NAN,
-        _ => (1.0 + fraction) * 2.0_f64.powi(exponent - 15),
+        _ => libm::ldexp(1.0 + fraction, exponent - 15),
     };
     if bits >> 15 == 1 { -size } else { size }
 }
@@ -279,7 +279,7 @@ mod tests {
     fn halves_are_as_ieee_754_says() {
         let bits = [0x3c00_u16, 0xc000, 0x7bff, 0x0001, 0x8000, 0x7c00, 0x3555];
         let expected =
-            [1.0, -2.0, 65504.0, 2.0_f64.powi(-24), 0.0, f64::INFINITY, 0.333_251_953_125];
+            [1.0, -2.0, 65504.0, 1.0 / f64::from(1 << 24), 0.0, f64::INFINITY, 0.333_251_953_125];
         assert_eq!(bits.map(half), expected);
         assert!(half(0x7e00).is_nan());
     }

@@ -1,10 +1,13 @@
 //! The manifests of a run in shards, read as one.
 
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
-use crate::{LabelTree, Manifest, RunFiles, disk};
+use crate::files::read_fault;
+use crate::{LabelTree, Manifest, RunFiles};
 
 /// The shards of a run that wrote a tree; none of a run that was undivided.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +25,7 @@ impl Shards {
     /// If one cannot be read.
     pub fn find(root: &Path) -> Result<Self, Fault> {
         let (tree, mut shards) = (LabelTree::new(root), Self::default());
-        let count = shard_count(root).unwrap_or(0);
+        let count = shard_count(root)?.unwrap_or(0);
         for files in (0..count).map(|index| RunFiles::shard(tree.clone(), index, count)) {
             match Manifest::load(&files.manifest())? {
                 Some(manifest) => shards.ended.push((files, manifest)),
@@ -92,15 +95,22 @@ pub(crate) fn load(root: &Path) -> Result<Option<Manifest>, Fault> {
 }
 
 /// How many shards there are, by the name of any shard's manifest.
-fn shard_count(root: &Path) -> Option<usize> {
-    let entries = disk::list(root).ok()?.into_iter();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+fn shard_count(root: &Path) -> Result<Option<usize>, Fault> {
+    let entries = match disk::list(root) {
+        Err(error) if is_no_folder(&error) => return Ok(None),
+        entries => entries.map_err(|error| read_fault(root, &error))?,
+    };
+    let names = entries.into_iter().filter_map(|entry| entry.file_name().into_string().ok());
     let count = |name: String| {
         let shard = name.strip_prefix("manifest.")?.strip_suffix(".json")?;
         let (_, count) = shard.split_once("-of-")?;
         count.parse().ok().filter(|&count| count > 0)
     };
-    names.filter_map(count).max()
+    Ok(names.filter_map(count).max())
+}
+
+fn is_no_folder(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
 }
 
 #[cfg(test)]

@@ -12,11 +12,12 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use serde::{Deserialize, Serialize};
 
+use crate::FileRecord;
 use crate::atomic::{create_dir, write_file};
 use crate::files::read_fault;
-use crate::{FileRecord, disk};
 
 /// A label tree on disk.
 #[derive(Clone, Debug)]

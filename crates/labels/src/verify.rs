@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
 use crate::files::hash_file;
 use crate::run_files::is_of_run;
-use crate::{FileRecord, LabelTree, Manifest, disk, json_hash};
+use crate::{FileRecord, LabelTree, Manifest, json_hash};
 
 /// Whether a listed file stands in the tree as its record says, every bit of it.
 ///
@@ -16,7 +17,7 @@ pub fn verify_file(tree: &LabelTree, record: &FileRecord) -> Result<(), Fault> {
     let place = tree.place(&record.path);
     let expected = format!("{} bytes of hash {}", record.bytes, record.blake3);
     let fault = |rule, found: String| Err(Fault::new(rule, record.path.as_str(), &expected, found));
-    match disk::metadata(&place) {
+    match disk::symlink_metadata(&place) {
         Err(error) => return fault("file-missing", error.to_string()),
         Ok(meta) if !meta.is_file() => return fault("file-kind", "no plain file".to_owned()),
         Ok(_) => {}

@@ -1,13 +1,11 @@
 //! Every parser of this crate that meets bytes of a log, behind one signature: what fuzzing and the
 //! tests with mutations knock at.
 
-use std::fs;
 use std::io::{Cursor, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use occlabel_testkit::{Door, in_folder};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -17,17 +15,10 @@ use crate::points::{PointColumns, decode_points};
 use crate::raw_labels::RawLabels;
 use crate::semantickitti::{label_name, line_of_pose, line_of_time};
 use crate::waymo::compressed;
-use crate::{ReadOptions, SceneSource, WaymoLog, kitti360, mcap};
-
-/// A parser.
-pub struct Door {
-    /// For people.
-    pub name: &'static str,
-    /// Reads bytes; whether they were what it expects.
-    pub knock: fn(&[u8]) -> bool,
-    /// Bytes that it expects.
-    pub seeds: fn() -> Vec<Vec<u8>>,
-}
+use crate::{
+    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, kitti360, mcap, nuscenes,
+    semantickitti,
+};
 
 /// All of them.
 pub const DOORS: &[Door] = &[
@@ -41,6 +32,8 @@ pub const DOORS: &[Door] = &[
     Door { name: "panoptic", knock: panoptic, seeds: || vec![npz(&npy(), true)] },
     Door { name: "npy", knock: |bytes| panoptic(&npz(bytes, false)), seeds: || vec![npy()] },
     Door { name: "table", knock: table, seeds: || vec![TABLE.to_vec()] },
+    Door { name: "nuscenes", knock: nuscenes::doors::drive, seeds: nuscenes::doors::files },
+    Door { name: "image_header", knock: image_header, seeds: || vec![png()] },
     Door { name: "body_mask", knock: body_mask, seeds: || vec![png()] },
     Door {
         name: "kitti_labels",
@@ -48,6 +41,23 @@ pub const DOORS: &[Door] = &[
         seeds: || vec![vec![40, 0, 1, 0, 10, 0, 0, 0]],
     },
     Door { name: "kitti_text", knock: kitti_text, seeds: || vec![TEXT.to_vec()] },
+    Door {
+        name: "semantickitti",
+        knock: semantickitti::doors::sequence,
+        seeds: semantickitti::doors::files,
+    },
+    #[cfg(feature = "av2")]
+    Door {
+        name: "argoverse2",
+        knock: crate::argoverse2::doors::log,
+        seeds: crate::argoverse2::doors::files,
+    },
+    #[cfg(feature = "waymo-v2")]
+    Door {
+        name: "waymo_parquet",
+        knock: crate::waymo::doors::segment,
+        seeds: crate::waymo::doors::files,
+    },
     Door { name: "kitti360_text", knock: kitti360::doors::text, seeds: kitti360::doors::texts },
     Door { name: "kitti360_boxes", knock: kitti360::doors::boxes, seeds: kitti360::doors::objects },
     Door { name: "kitti360_fused", knock: kitti360::doors::fused, seeds: kitti360::doors::clouds },
@@ -61,20 +71,6 @@ const TABLE: &[u8] = br#"[ {"token": "a\"]", "size": [1.5, 2]},{"token":"b","lis
 const TEXT: &[u8] = b"1 0 0 1.5 0 1 0 -2e-3 0 0 1 3\n0.103736\n-1 0 0 0 0 1 0 0 0 0 -1 0\n9e8";
 /// Points of a fixed file.
 const POINTS: usize = 4;
-
-/// Hands bytes on as files in a folder of their own.
-pub(crate) fn in_folder(files: &[(&str, &[u8])], read: impl Fn(&Path) -> bool) -> bool {
-    static FOLDERS: AtomicUsize = AtomicUsize::new(0);
-    let (process, number) = (std::process::id(), FOLDERS.fetch_add(1, Ordering::Relaxed));
-    let folder: PathBuf = std::env::temp_dir().join(format!("occlabel-door-{process}-{number}"));
-    for (name, bytes) in files {
-        let path = folder.join(name);
-        fs::create_dir_all(path.parent().unwrap()).and_then(|()| fs::write(path, bytes)).unwrap();
-    }
-    let read = read(&folder);
-    fs::remove_dir_all(&folder).unwrap();
-    read
-}
 
 pub(crate) fn read_options() -> ReadOptions {
     mcap::samples::options().read
@@ -162,6 +158,11 @@ fn table(bytes: &[u8]) -> bool {
 
 fn body_mask(bytes: &[u8]) -> bool {
     decode_mask(bytes.to_vec(), 4, 4).is_ok()
+}
+
+fn image_header(bytes: &[u8]) -> bool {
+    let image = ImageFile { file: "a".into(), size: [4, 4] };
+    in_folder(&[("a", bytes)], |root| check_images(root, &[image]).is_empty())
 }
 
 fn png() -> Vec<u8> {

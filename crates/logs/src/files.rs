@@ -1,10 +1,10 @@
 //! Files of a log, and names that may be trusted as theirs.
 
-use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk::{self as disk, File};
 
 /// A file of points, labels or pixels longer than this is refused.
 const MAX_FILE_BYTES: u64 = 1 << 30;
@@ -14,11 +14,11 @@ const MAX_FILE_BYTES: u64 = 1 << 30;
 /// # Errors
 /// If it is absent (`missing-file`), or cannot be opened.
 pub(crate) fn open_file(path: &Path, place: &str) -> Result<File, Fault> {
-    let metadata = fs::metadata(path).map_err(|error| unreadable(place, &error))?;
+    let metadata = disk::metadata(path).map_err(|error| unreadable(place, &error))?;
     if !metadata.is_file() {
         return Err(Fault::new("unreadable-file", place, "a file", "something else"));
     }
-    File::open(path).map_err(|error| unreadable(place, &error))
+    disk::open(path).map_err(|error| unreadable(place, &error))
 }
 
 /// The bytes of a file of the log, at most 1 GiB.
@@ -50,7 +50,7 @@ fn check_size(name: &str, bytes: u64) -> Result<(), Fault> {
 /// # Errors
 /// One that names all that are not (`missing-file`).
 pub(crate) fn check_present(root: &Path, names: &[String]) -> Result<(), Fault> {
-    let absent = names.iter().filter(|name| !root.join(name).exists());
+    let absent = names.iter().filter(|name| !disk::exists(&root.join(name)));
     let absent: Vec<&str> = absent.map(String::as_str).collect();
     match absent.len() {
         0 => Ok(()),
@@ -61,7 +61,7 @@ pub(crate) fn check_present(root: &Path, names: &[String]) -> Result<(), Fault> 
 
 /// A file's size in bytes; 0 if it cannot be looked at.
 pub(crate) fn file_bytes(root: &Path, name: &str) -> u64 {
-    fs::metadata(root.join(name)).map_or(0, |metadata| metadata.len())
+    disk::metadata(&root.join(name)).map_or(0, |metadata| metadata.len())
 }
 
 /// What an error of the file system says about a file.
@@ -99,6 +99,7 @@ pub(crate) fn is_folder_name(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs::File;
 
     #[test]
     fn fault_36_file_names_stay_below_the_root() {

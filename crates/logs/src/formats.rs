@@ -1,7 +1,8 @@
 //! Which format a folder looks like.
 
-use std::fs;
 use std::path::Path;
+
+use occlabel_disk as disk;
 
 use crate::{argoverse2, kitti360, mcap, nuscenes, semantickitti, waymo};
 
@@ -25,12 +26,12 @@ pub fn looks_like(root: &Path) -> Option<&'static str> {
 
 /// Links to folders are not followed.
 fn has_av2_log(folder: &Path, depth: usize) -> bool {
-    if folder.join(argoverse2::POSES).is_file() {
+    if disk::is_file(&folder.join(argoverse2::POSES)) {
         return true;
     }
-    let Ok(entries) = fs::read_dir(folder) else { return false };
+    let Ok(entries) = disk::list(folder) else { return false };
     depth > 0
-        && entries.flatten().any(|entry| {
+        && entries.into_iter().any(|entry| {
             let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
             is_folder && has_av2_log(&entry.path(), depth - 1)
         })
@@ -39,6 +40,7 @@ fn has_av2_log(folder: &Path, depth: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn folder_with(file: &str, bytes: &[u8]) -> Option<&'static str> {
         let folder = tempfile::tempdir().unwrap();

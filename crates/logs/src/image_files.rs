@@ -1,11 +1,11 @@
 //! Images: no label needs them, so `check` reads only their headers, and `view` their bytes.
 
-use std::fs::File;
 use std::io::{BufReader, ErrorKind};
 use std::path::Path;
 
 use imagesize::ImageError;
 use occlabel_core::Fault;
+use occlabel_disk::File;
 
 use crate::files::{name_defect, open_file, read_file};
 

@@ -1,13 +1,13 @@
 //! Which of a scene's files are there, found out without reading them.
 
 use std::collections::{BTreeSet, HashMap};
-use std::fs;
-use std::io::ErrorKind;
 use std::path::Path;
 
 use occlabel_core::{Fault, Scene};
+use occlabel_disk as disk;
 
 use crate::SceneSource;
+use crate::files::unreadable;
 
 /// The files of a scene's sweeps.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct Inventory {
     pub missing: Vec<MissingFile>,
 }
 
-/// A file that is not there.
+/// A file that is not there, or cannot be looked at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingFile {
     /// Its path below the log's root.
@@ -27,12 +27,14 @@ pub struct MissingFile {
     pub sweep: usize,
     /// Whether a keyframe refers to a sweep that it belongs to.
     pub is_reference: bool,
+    /// That it is absent, or why it cannot be looked at.
+    found: Fault,
 }
 
 impl MissingFile {
     /// That it is missing, as a fault.
     pub fn fault(&self) -> Fault {
-        let fault = Fault::new("missing-file", &self.file, "a file", "none");
+        let fault = self.found.clone();
         if self.is_reference { fault.record("reference sweep of a keyframe") } else { fault }
     }
 }
@@ -57,12 +59,17 @@ impl Inventory {
 
     /// Looks for a file; its place among the missing, if it is one.
     fn look(&mut self, root: &Path, file: String, sweep: usize) -> Option<usize> {
-        if let Some(bytes) = size(&root.join(&file)) {
-            self.present.push((file, bytes));
-            return None;
+        match disk::metadata(&root.join(&file)) {
+            Ok(metadata) => {
+                self.present.push((file, metadata.len()));
+                None
+            }
+            Err(error) => {
+                let found = unreadable(&file, &error);
+                self.missing.push(MissingFile { file, sweep, is_reference: false, found });
+                Some(self.missing.len() - 1)
+            }
         }
-        self.missing.push(MissingFile { file, sweep, is_reference: false });
-        Some(self.missing.len() - 1)
     }
 
     /// One fault about all that is missing: how many files, and about how many bytes.
@@ -92,13 +99,4 @@ impl Inventory {
 fn kind(file: &str) -> &str {
     let name = file.rsplit('/').next().unwrap_or(file);
     name.split_once('.').map_or("", |(_, ending)| ending)
-}
-
-/// A file's size; `None` if it is absent. One that is there but cannot be looked at counts as empty:
-/// reading it will tell what is wrong.
-fn size(path: &Path) -> Option<u64> {
-    match fs::metadata(path) {
-        Ok(metadata) => Some(metadata.len()),
-        Err(error) => (error.kind() != ErrorKind::NotFound).then_some(0),
-    }
 }

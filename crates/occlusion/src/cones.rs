@@ -86,7 +86,7 @@ impl<'a> Cones<'a> {
     #[inline]
     pub(crate) fn pixel(&self, column: u32, row: u32) -> Option<(u32, u32)> {
         let (columns, rows) = self.size();
-        (column < columns && row < rows).then_some((column * self.stride, row * self.stride))
+        (column < columns && row < rows).then(|| (column * self.stride, row * self.stride))
     }
 
     /// The cone of a block, if it has any directions.

@@ -24,6 +24,8 @@
 mod aggregate_scene;
 mod check;
 mod config;
+#[cfg(any(test, fuzzing))]
+pub mod doors;
 mod flow;
 mod label_keyframe;
 mod layers;

@@ -276,8 +276,9 @@ fn section_11_flow_of_a_track_that_turns_is_the_chord_over_the_time() {
     for (centre, velocity) in flow_of(box_at(HERE, 0.5), Some((at(seconds), next)), &[]) {
         // A point at (x, y) from the middle goes to (x cos - y sin, x sin + y cos), and on.
         let (x, y) = (centre[0] - HERE[0], centre[1] - HERE[1]);
-        let dx = x * turn_rad.cos() - y * turn_rad.sin() - x + shift[0];
-        let dy = x * turn_rad.sin() + y * turn_rad.cos() - y + shift[1];
+        let (sine, cosine) = libm::sincos(turn_rad);
+        let dx = x * cosine - y * sine - x + shift[0];
+        let dy = x * sine + y * cosine - y + shift[1];
         assert_velocity(velocity, [dx / seconds, dy / seconds, 0.0]);
     }
 }
@@ -373,7 +374,7 @@ fn section_13_the_grid_stands_in_the_ego_or_in_the_lidar_pitch_included() {
     drive.add_sweep(header(0.0, world_from_ego, ego_from_lidar), cloud);
     drive.add_keyframe(0, &[]);
 
-    let (sine, cosine) = (0.2_f64.sin(), 0.2_f64.cos());
+    let (sine, cosine) = libm::sincos(0.2);
     let p_ego = [0.5 + 5.0 * cosine - 0.3 * sine, 0.7, 0.4 + 5.0 * sine + 0.3 * cosine];
     for (frame, expected) in [("ego", p_ego), ("lidar", [5.0, 0.6, 0.3])] {
         let rules = small(&[&format!("grid.frame={frame}")]);
@@ -404,7 +405,7 @@ fn section_13_a_pitched_ego_pitches_its_grid() {
     drive.add_sweep(header(0.0, world_from_ego, Pose::identity()), cloud);
     drive.add_keyframe(0, &[]);
     let rules = small(&[]);
-    let (sine, cosine) = (0.2_f64.sin(), 0.2_f64.cos());
+    let (sine, cosine) = libm::sincos(0.2);
     let expected = [x_m * cosine + below_m * sine, 0.0, x_m * sine - below_m * cosine];
     assert_eq!(class_of(&drive.label(&rules), &rules, expected), Some(ROAD), "{expected:?}");
     assert!(expected[2] > 0.0, "1 m below the ego, yet above its plane: {}", expected[2]);

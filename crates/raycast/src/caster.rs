@@ -10,7 +10,7 @@
 use std::ops::ControlFlow;
 
 use occlabel_core::{
-    GridSpec, Kernel, LatticePoint, Level, RayCounts, VoxelGrid, VoxelIndex, walk,
+    GridSpec, Kernel, LATTICE, LatticePoint, Level, RayCounts, VoxelGrid, VoxelIndex, walk,
 };
 
 use crate::cells::Cell;
@@ -18,6 +18,10 @@ use crate::near::{NearRules, NearSteps, RayEnds};
 use crate::walkers::{MOST_VOXELS, Walks, walk_lanes};
 use crate::ways::{Batch, LANES, Lane, Ways, all, any, fits};
 use crate::{Outside, RaySettings};
+
+/// Longest way that is walked, lattice units along an axis: 2^20 voxels, the most that a configuration
+/// lets a ray be (labels.md section 8).
+const LONGEST: u64 = (LATTICE as u64) << 20;
 
 /// A ray to cast: walked from `end` towards `origin`.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +41,12 @@ impl Ray {
     pub(crate) fn whole(end: LatticePoint, origin: LatticePoint, is_flat: bool) -> Self {
         let ends = RayEnds { point: end.voxel(), origin: origin.voxel(), is_flat };
         Self { end, origin, hits: true, ends }
+    }
+
+    /// Whether no lidar can have measured it. A track annotated at the end of the world has such rays,
+    /// and would be walked to for minutes.
+    fn is_longer_than_any(&self) -> bool {
+        (0..3).any(|axis| self.end.0[axis].abs_diff(self.origin.0[axis]) > LONGEST)
     }
 }
 
@@ -140,6 +150,9 @@ impl<'a, C: Cell> Caster<'a, C> {
             return;
         }
         if !self.takes_parts() || !fits(ray.end, ray.origin) {
+            if ray.is_longer_than_any() {
+                return;
+            }
             return self.cast_alone(ray);
         }
         self.waiting.put(self.waiting_len, ray.end, ray.origin);

@@ -55,6 +55,8 @@ mod check;
 mod clip;
 mod clock;
 mod convert;
+#[cfg(any(test, fuzzing))]
+pub mod doors;
 mod drive;
 mod ego;
 mod ground;

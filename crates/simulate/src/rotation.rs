@@ -1,7 +1,6 @@
 //! Rotations from angles, the same on every machine.
 //!
-//! nalgebra's own makers of rotations call the platform's sine, which differs from one machine to
-//! the next; these call `libm`'s.
+//! They call `libm`'s sine. nalgebra's own makers of rotations do so by its feature `libm-force` alone.
 
 use nalgebra::{Quaternion, Translation3, UnitQuaternion, Vector3};
 use occlabel_core::{Fault, Pose};

@@ -78,11 +78,11 @@ fn pixels_show_what_stands_there_at_its_distance() {
     let [wall, car, road] = [What::Static(0), What::Mover(0), What::Ground(0)];
     for (column, row, what, instance, expected_m) in [
         // 3 columns a metre at 20 m: the car is 2 m to either side, so column 130 is beside it.
-        (130, 45, wall, 0, 14.3 * (1.0 + (50.0_f64 / 60.0).powi(2)).sqrt()),
-        (80, 41, wall, 0, 14.3 * (1.0 + (4.0_f64 / 60.0).powi(2)).sqrt()),
-        (80, 50, car, 1, 6.3 * (1.0 + (5.0_f64 / 60.0).powi(2)).sqrt()),
+        (130, 45, wall, 0, 14.3 * libm::hypot(1.0, 50.0 / 60.0)),
+        (80, 41, wall, 0, 14.3 * libm::hypot(1.0, 4.0 / 60.0)),
+        (80, 50, car, 1, 6.3 * libm::hypot(1.0, 5.0 / 60.0)),
         // The ray that falls 1.5 m over 60 / 40 of it.
-        (80, 85, road, 0, 1.5 * (1.0 + (60.0_f64 / 40.0).powi(2)).sqrt()),
+        (80, 85, road, 0, 1.5 * libm::hypot(1.0, 60.0 / 40.0)),
     ] {
         let (found, number, distance_m) = at(&image, column, row);
         assert_eq!((found, number), (class(&drive, what), instance), "{column} {row}");

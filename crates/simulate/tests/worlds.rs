@@ -72,7 +72,8 @@ fn noise_and_dropout_are_as_large_as_told() {
     let returns: Vec<_> = (0..20).flat_map(|k| lidar.sweep(drive.world(), k)).collect();
     let all: usize = (0..20).map(|k| lidar.true_sweep(drive.world(), k).len()).sum();
     let lost = 1.0 - returns.len() as f64 / all as f64;
-    let squares = returns.iter().map(|r| (r.position_m.coords.norm() - r.hit.distance_m).powi(2));
+    let squares =
+        returns.iter().map(|r| libm::pow(r.position_m.coords.norm() - r.hit.distance_m, 2.0));
     let deviation_m = (squares.sum::<f64>() / returns.len() as f64).sqrt();
     assert!(returns.len() > 5_000 && (lost - 0.1).abs() < 0.02, "{lost} of {all}");
     assert!((deviation_m - 0.02).abs() < 0.001, "{deviation_m}");

@@ -1,4 +1,4 @@
-//! Known scenes, grids as text, and a small log writer, for tests only.
+//! Known scenes, grids as text, a small log writer, and doors to knock at, for tests only.
 //!
 //! A label can only be judged against a world that is known. So this crate holds one: a plain
 //! street of planes, boxes and cylinders, whose every ray has a closed-form answer, driven through
@@ -20,6 +20,10 @@
 //! ```
 
 mod categories;
+mod corpus;
+#[cfg(not(fuzzing))]
+mod damage;
+mod door;
 mod drive;
 mod grid_text;
 mod lidar;
@@ -36,6 +40,10 @@ mod table_set;
 mod tables;
 mod token;
 
+pub use corpus::knock_with_corpus;
+#[cfg(not(fuzzing))]
+pub use damage::knock_with_damage;
+pub use door::{Door, in_folder};
 pub use grid_text::{assert_golden, draw};
 pub use lidar::LidarPattern;
 pub use log_spec::LogSpec;

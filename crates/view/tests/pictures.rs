@@ -127,8 +127,8 @@ fn low_is_darker_than_high_and_states_differ() {
 /// vertical, then tilted by the elevation.
 fn projected(orbit: &Orbit, p: Point3<f64>) -> (u32, u32) {
     let off = p - orbit.target;
-    let (sin_a, cos_a) = orbit.azimuth_rad.sin_cos();
-    let (sin_e, cos_e) = orbit.elevation_rad.sin_cos();
+    let (sin_a, cos_a) = libm::sincos(orbit.azimuth_rad);
+    let (sin_e, cos_e) = libm::sincos(orbit.elevation_rad);
     let (near, right) = (off.x * cos_a + off.y * sin_a, off.y * cos_a - off.x * sin_a);
     let depth = orbit.distance_m - near * cos_e - off.z * sin_e;
     let up = off.z * cos_e - near * sin_e;

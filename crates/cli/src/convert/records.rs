@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use occlabel_core::Fault;
 use occlabel_dialects::{Class, ClassTable, KeyframeKey};
+use occlabel_disk as disk;
 use occlabel_labels::{
     ClassRecord, GridRecord, InputHashes, InputRecord, JournalEntry, Manifest, Program, RunRecord,
     SceneRecord, TaxonomyRecord, json_hash,
@@ -27,7 +28,7 @@ fn files_of(job: &Job, key: &KeyframeKey) -> Vec<String> {
     let places = arrays.chain([""]).map(|name| job.set.place(key, name));
     let inside = |place: std::path::PathBuf| {
         let path = place.strip_prefix(&job.args.input).ok()?;
-        place.is_file().then(|| path.display().to_string())
+        disk::is_file(&place).then(|| path.display().to_string())
     };
     places.filter_map(inside).collect()
 }

@@ -18,7 +18,7 @@ pub(crate) fn begin_run(
     console: &Console,
 ) -> Result<(Begun, Finished), Stop> {
     let files = run_files(args);
-    let earlier = EarlierReport::load(&files.report());
+    let earlier = EarlierReport::load(&files.report())?;
     let mut begun = begin(&files, record, resume(args.resume)).map_err(usage_if_differs)?;
     let mut finished = std::mem::take(&mut begun.finished);
     earlier.recall(&mut finished);

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_labels::{Begun, FileRecord, JournalEntry, LabelTree, Manifest, RunRecord, TreePath};
 
 use crate::label::job::Job;
@@ -50,6 +51,6 @@ fn earlier_manifests(tree: &LabelTree, main: &Manifest) -> Result<Vec<FileRecord
         main.files.iter().filter_map(|file| Some(file.path.as_str().split_once('/')?.0)).collect();
     let paths = folders.into_iter().map(|folder| TreePath::new(format!("{folder}/manifest.json")));
     let paths = paths.collect::<Result<Vec<_>, _>>()?.into_iter();
-    let theirs = paths.filter(|path| !listed(path) && tree.place(path).is_file());
+    let theirs = paths.filter(|path| !listed(path) && disk::is_file(&tree.place(path)));
     theirs.map(|path| FileRecord::of_file(tree, path)).collect()
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
 use occlabel_dialects::KeyframeInfo;
+use occlabel_disk as disk;
 use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::MemoryModel;
@@ -35,6 +36,8 @@ pub(crate) struct PlannedScene {
     /// An upper estimate of the memory that takes.
     pub(crate) memory_bytes: u64,
     pub(crate) sweeps: usize,
+    /// What was told of it.
+    told: Vec<Fault>,
     /// An upper estimate of its points.
     pub(crate) points: u64,
 }
@@ -77,15 +80,30 @@ impl PlannedScene {
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
             name: name.to_owned(),
-            record: scene_record(job, &scene),
+            record: scene_record(job, &scene).map_err(|fault| Refused::Broken(vec![fault]))?,
             infos: job.targets.infos(&scene).map_err(|fault| Refused::Broken(vec![fault]))?,
             wanted,
             at_once,
             memory_bytes: model.bytes(at_once.0, at_once.1),
             files: inventory.present,
             sweeps: scene.sweeps.len(),
+            told: told_by(&scene),
             points,
         }))
+    }
+
+    /// Refuses the scene, read again to be labelled, if less of it can be read than when it was planned:
+    /// what it loses has been told by then.
+    pub(crate) fn check_same(&self, scene: &Scene) -> Result<(), Fault> {
+        let told = told_by(scene);
+        if let Some(fault) = told.into_iter().find(|fault| !self.told.contains(fault)) {
+            return Err(fault);
+        }
+        if scene.sweeps.len() == self.sweeps {
+            return Ok(());
+        }
+        let expected = format!("{} sweeps, as when the run began", self.sweeps);
+        Err(Fault::new("log-changed", &self.name, expected, scene.sweeps.len().to_string()))
     }
 
     /// Whether earlier runs labelled all that is asked for.
@@ -139,6 +157,12 @@ fn chosen_keyframes(job: &Job, scene: &Scene, tokens: &mut BTreeSet<&str>) -> BT
     let all = job.args.keyframes.is_empty();
     let is_chosen = |keyframe: &&Keyframe| tokens.remove(keyframe.token.as_str()) || all;
     scene.keyframes.iter().filter(is_chosen).map(|keyframe| keyframe.token.clone()).collect()
+}
+
+/// All that reading a scene's tables told.
+fn told_by(scene: &Scene) -> Vec<Fault> {
+    let refused = scene.refused.iter().map(|refusal| &refusal.fault);
+    scene.warnings.iter().chain(refused).cloned().collect()
 }
 
 /// Records that the reader refused.
@@ -206,7 +230,7 @@ fn available_memory_bytes() -> Option<u64> {
     Some(kib * 1024)
 }
 
-fn scene_record(job: &Job, scene: &Scene) -> SceneRecord {
+fn scene_record(job: &Job, scene: &Scene) -> Result<SceneRecord, Fault> {
     let names = &job.opened.rules.taxonomy.names;
     let track = |track: &BoxTrack| TrackRecord {
         index: track.id.0,
@@ -214,13 +238,13 @@ fn scene_record(job: &Job, scene: &Scene) -> SceneRecord {
         class: track.class().map(|class| names[class.index()].clone()),
         category: track.category.clone(),
     };
-    SceneRecord {
+    Ok(SceneRecord {
         cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
         tracks: scene.tracks.iter().map(track).collect(),
         keyframes: scene.keyframes.iter().map(|keyframe| keyframe.token.clone()).collect(),
         poses: scene.keyframes.iter().map(|keyframe| pose_record(scene, keyframe)).collect(),
-        world: world_hash(&job.args.log.input, &scene.name),
-    }
+        world: world_hash(&job.args.log.input, &scene.name)?,
+    })
 }
 
 fn pose_record(scene: &Scene, keyframe: &Keyframe) -> PoseRecord {
@@ -228,11 +252,19 @@ fn pose_record(scene: &Scene, keyframe: &Keyframe) -> PoseRecord {
 }
 
 /// The hash of the world that lies beside a simulated log; none beside a real one.
-fn world_hash(root: &Path, scene: &str) -> Option<String> {
-    let files = [format!("{scene}.toml"), "world.toml".to_owned()];
-    let worlds = files.iter().filter_map(|file| {
-        let text = std::fs::read_to_string(root.join("truth").join(file)).ok()?;
-        World::parse(&text, file).ok()
-    });
-    worlds.into_iter().find(|world| world.name == scene).map(|world| world.hash)
+fn world_hash(root: &Path, scene: &str) -> Result<Option<String>, Fault> {
+    for file in [format!("{scene}.toml"), "world.toml".to_owned()] {
+        let path = root.join("truth").join(&file);
+        if !disk::is_file(&path) {
+            continue;
+        }
+        let text = disk::read(&path).map_err(|error| {
+            Fault::new("read", path.display().to_string(), "to read this file", error.to_string())
+        })?;
+        let world = World::parse(&String::from_utf8_lossy(&text), &file);
+        if let Some(world) = world.ok().filter(|world| world.name == scene) {
+            return Ok(Some(world.hash));
+        }
+    }
+    Ok(None)
 }

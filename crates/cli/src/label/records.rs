@@ -1,13 +1,12 @@
 //! What a run writes about itself: its record and the manifest.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 use occlabel_core::{Fault, Taxonomy};
 use occlabel_dialects::Annotations;
 use occlabel_labels::{
-    ClassRecord, FileRecord, GridRecord, InputHashes, InputMark, InputRecord, JournalEntry,
-    Manifest, Program, RunRecord, SceneRecord, TaxonomyRecord, json_hash,
+    ClassRecord, FileRecord, GridRecord, InputHashes, InputRecord, JournalEntry, Manifest, Program,
+    RunRecord, SceneRecord, TaxonomyRecord, json_hash,
 };
 use occlabel_pipeline::Config;
 use serde_json::Value;
@@ -23,21 +22,13 @@ pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
     let tables =
         job.opened.source.tables().into_iter().map(|path| InputRecord::of_table(root, path));
     let sweeps = plan.scenes.iter().flat_map(|scene| {
-        let record = |(path, _): &(String, u64)| Ok(sweep_record(root, path).of_scene(&scene.name));
+        let record = |(path, _): &(String, u64)| {
+            Ok(InputRecord::of_sweep(root, path)?.of_scene(&scene.name))
+        };
         scene.files.iter().map(record)
     });
     let inputs = tables.chain(sweeps).collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config_json(&job.opened.config), inputs))
-}
-
-/// The record of a sweep. One that cannot even be looked at counts as empty: reading it will tell.
-fn sweep_record(root: &Path, path: &str) -> InputRecord {
-    InputRecord::of_sweep(root, path).unwrap_or_else(|_| InputRecord {
-        path: path.to_owned(),
-        bytes: 0,
-        mark: InputMark::MtimeNs(0),
-        scene: None,
-    })
 }
 
 fn config_json(config: &Config) -> Value {

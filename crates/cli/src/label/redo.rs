@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
 use crate::label::plan::Plan;
 
@@ -19,7 +20,7 @@ pub(crate) fn read(list: Option<&Path>, plan: &Plan) -> Result<Redo, Fault> {
     let fault = |expected: &str, found: String| {
         Fault::new("redo", list.display().to_string(), expected, found)
     };
-    let text = std::fs::read_to_string(list)
+    let text = disk::read_to_string(list)
         .map_err(|error| fault("SCENE/TOKEN a line", error.to_string()))?;
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let keyframe = |line: &str| {

@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
+use occlabel_core::Fault;
+use occlabel_disk as disk;
+use occlabel_labels::read_bounded;
 use serde_json::{Value, json};
 
 use crate::exit::Outcome;
@@ -14,6 +17,8 @@ use crate::label::usage::Usage;
 
 /// Under this name a scene of the report holds its keyframes' summaries.
 const LABELLED: &str = "labelled";
+/// A report of more bytes is not read: that of a thousand scenes has about 200 MB.
+const MAX_BYTES: u64 = 1 << 30;
 
 /// Grows scene by scene.
 pub(crate) struct Report {
@@ -87,9 +92,12 @@ pub(crate) struct EarlierReport(Value);
 
 impl EarlierReport {
     /// Reads it; one that is not there or broken tells nothing.
-    pub(crate) fn load(path: &Path) -> Self {
-        let text = std::fs::read(path).unwrap_or_default();
-        Self(serde_json::from_slice(&text).unwrap_or_default())
+    ///
+    /// # Errors
+    /// If it is there but cannot be read.
+    pub(crate) fn load(path: &Path) -> Result<Self, Fault> {
+        let text = if disk::exists(path) { read_bounded(path, MAX_BYTES)? } else { Vec::new() };
+        Ok(Self(serde_json::from_slice(&text).unwrap_or_default()))
     }
 
     /// Gives the keyframes that only an earlier manifest knows of what this report tells of them.

@@ -76,8 +76,10 @@ impl SceneRun<'_> {
         let mut done = self.finished_before(finished, findings);
         let _lock = WriterLock::of_scene(self.tree, &self.planned.name)?;
         let scene = self.job.opened.source.load(&self.planned.name)?;
+        self.planned.check_same(&scene)?;
         let todo = self.keyframes_to_label(&scene, &done);
-        self.progress.scene(&scene.name, todo.len(), done.tally.kept);
+        let kept = self.planned.wanted.len() - todo.len();
+        self.progress.scene(&scene.name, todo.len(), kept);
         if !todo.is_empty() {
             done = self.label_keyframes(&scene, todo, done, finished, journal, findings)?;
         }

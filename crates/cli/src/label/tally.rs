@@ -35,7 +35,7 @@ pub(crate) struct SweepCounts {
     pub(crate) read: u64,
     /// Absent or broken.
     pub(crate) left_out: u64,
-    /// Sizes of the files that hold the scene's sweeps.
+    /// Sizes of the files that hold them and their point labels.
     pub(crate) file_bytes: u64,
 }
 

@@ -12,6 +12,7 @@ use std::path::Path;
 
 use occlabel_core::{Blocks, Fault, GridSpec, OccupancyLabels, Scene};
 use occlabel_dialects::{Dialect, KeyframeInfo, scene_infos};
+use occlabel_disk as disk;
 use occlabel_labels::{FileRecord, TreePath, evidence_npz, labels_npz};
 use occlabel_pipeline::{Config, GridFrame, GridTable, Rules};
 use occlabel_voxelize::pool;
@@ -88,7 +89,7 @@ impl Targets {
             return self.add_grid(opened, grid, Some(format!("in-{text}")), Some(dialect));
         }
         let file = Path::new(text);
-        if !file.is_file() {
+        if !disk::is_file(file) {
             let expected = format!(
                 "a voxel size in metres, a file with a [grid], or one of {}",
                 Dialect::names().join(", ")

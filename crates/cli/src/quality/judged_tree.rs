@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use occlabel_core::{Fault, GridSpec, Keyframe, Timestamp, VoxelGrid};
+use occlabel_disk as disk;
 use occlabel_evaluate::JudgedLabels;
 use occlabel_labels::{LabelArrays, LabelTree, Manifest, TreePath, read_evidence, read_labels};
 use occlabel_pipeline::{Config, Rules};
@@ -85,7 +86,7 @@ impl JudgedTree {
         let place = |path| self.tree.place(&path);
         let labels = read_labels(&place(TreePath::labels(scene, token)?), self.spec())?;
         let evidence = place(TreePath::evidence(scene, token)?);
-        let flow = match evidence.exists() {
+        let flow = match disk::exists(&evidence) {
             true => Some(read_evidence(&evidence, self.spec())?.flow),
             false => None,
         };

@@ -8,6 +8,7 @@ mod run_report;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_labels::write_file;
 use occlabel_view::{Remark, Run, RunScene, report_page};
 
@@ -25,7 +26,7 @@ pub(crate) fn run(args: &ReportArgs, console: &Console) -> Result<Outcome, Stop>
     let labels = ShownSet::open(&args.labels, args.dialect.as_deref()).map_err(Stop::usage)?;
     let labels = labels.colored(args.colors.into());
     start_threads(args.jobs);
-    let (told, notes) = run_report::read(&args.labels);
+    let (told, notes) = run_report::read(&args.labels)?;
     let scenes = keyframes::scenes(&labels, &told, console)?;
     let run = Run { quality, ..describe(args, &labels, &told, scenes, notes)? };
     let thumbnails = keyframes::thumbnails(&labels, &run)?;
@@ -74,7 +75,7 @@ fn unfinished(folder: &Path, labels: &ShownSet) -> Option<String> {
     if labels.manifest.is_some() {
         return None;
     }
-    let is_begun = folder.join("run.json").is_file();
+    let is_begun = disk::is_file(&folder.join("run.json"));
     Some(match is_begun {
         true => "This run is not finished: it has no manifest yet. What stands so far is shown; the same \
             `label` command goes on from there."

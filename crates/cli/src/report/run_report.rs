@@ -1,10 +1,10 @@
 //! What `report.json` tells, or those of all shards.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_labels::read_bounded;
 use occlabel_view::Remark;
 use serde::Deserialize;
@@ -61,11 +61,15 @@ struct Finding {
     hint: Option<String>,
 }
 
-/// The reports of a folder, put together, and a note on each that cannot be read, or on their absence.
-pub(crate) fn read(folder: &Path) -> (RunReport, Vec<String>) {
+/// The reports of a folder, put together, and a note on each that is none, or on their absence.
+///
+/// # Errors
+/// If the folder or one of them cannot be read.
+pub(crate) fn read(folder: &Path) -> Result<(RunReport, Vec<String>), Fault> {
     let (mut whole, mut notes) = (RunReport::default(), Vec::new());
-    for name in report_names(folder) {
-        match read_one(&folder.join(&name)) {
+    for name in report_names(folder)? {
+        let bytes = read_bounded(&folder.join(&name), MAX_BYTES)?;
+        match serde_json::from_slice(&bytes) {
             Ok(report) => whole.add(report),
             Err(why) => notes.push(format!("{name} cannot be read: {why}.")),
         }
@@ -73,25 +77,23 @@ pub(crate) fn read(folder: &Path) -> (RunReport, Vec<String>) {
     if whole.parts == 0 && notes.is_empty() {
         notes.push("There is no report.json: times, warnings and drops are not known.".to_owned());
     }
-    (whole, notes)
+    Ok((whole, notes))
 }
 
 /// `report.json`, or those of shards, in order of their names.
-fn report_names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+fn report_names(folder: &Path) -> Result<Vec<String>, Fault> {
+    let entries = disk::list(folder).map_err(|error| {
+        let place = folder.display().to_string();
+        Fault::new("read", place, "to read this folder", error.to_string())
+    })?;
+    let names = entries.into_iter().filter_map(|entry| entry.file_name().into_string().ok());
     let of_shard = |name: &str| {
         let shard = name.strip_prefix("report.").and_then(|rest| rest.strip_suffix(".json"));
         shard.is_some_and(|shard| shard.contains("-of-"))
     };
     let mut names: Vec<_> = names.filter(|name| name == "report.json" || of_shard(name)).collect();
     names.sort_unstable();
-    names
-}
-
-fn read_one(path: &Path) -> Result<RunReport, String> {
-    let bytes = read_bounded(path, MAX_BYTES).map_err(|fault: Fault| fault.found)?;
-    serde_json::from_slice(&bytes).map_err(|error| error.to_string())
+    Ok(names)
 }
 
 impl RunReport {
@@ -174,6 +176,7 @@ impl Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn write(folder: &Path, name: &str, text: &str) {
         fs::write(folder.join(name), text).unwrap();
@@ -183,7 +186,7 @@ mod tests {
     fn shards_are_put_together_and_broken_ones_noted() {
         let folder = tempfile::tempdir().unwrap();
         let place = folder.path();
-        assert_eq!(read(place).1.len(), 1, "none is a note");
+        assert_eq!(read(place).unwrap().1.len(), 1, "none is a note");
         write(
             place,
             "report.0-of-3.json",
@@ -200,7 +203,7 @@ mod tests {
         );
         write(place, "report.2-of-3.json", "{");
         write(place, "report.txt", "{");
-        let (report, notes) = read(place);
+        let (report, notes) = read(place).unwrap();
         assert_eq!((report.parts, report.seconds, report.total.points), (2, Some(5.0), 7));
         assert_eq!(
             (report.outcome.as_deref(), report.peak_memory_bytes),

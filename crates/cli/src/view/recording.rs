@@ -1,10 +1,10 @@
 //! A scene of labels, and what its log has beside them, as an MCAP file on one time line.
 
-use std::fs::File;
 use std::io::BufWriter;
 
 use occlabel_core::{Exposure, Fault, Palette, Pose, SweepHeader, Timestamp};
 use occlabel_dialects::KeyframeKey;
+use occlabel_disk::File;
 use occlabel_labels::write_pieces;
 use occlabel_pipeline::standing_at;
 use occlabel_view::{EGO, GRID, Recording, ShownBox, ShownScene, WORLD};
@@ -71,7 +71,7 @@ enum Event {
     Keyframe(usize),
 }
 
-type To<'a, 'b> = Recording<&'a mut BufWriter<&'b File>>;
+type To<'a, 'b> = Recording<&'a mut BufWriter<&'b mut File>>;
 
 impl Shown<'_> {
     /// All events in order of time. Of some keyframes alone all sweeps are those between them.
@@ -100,7 +100,7 @@ impl Shown<'_> {
     fn record(
         &self,
         events: &[(Timestamp, Event)],
-        to: &mut BufWriter<&File>,
+        to: &mut BufWriter<&mut File>,
         place: &str,
     ) -> Result<(), Fault> {
         let mut to = Recording::begin(to, place, &self.scene)?;

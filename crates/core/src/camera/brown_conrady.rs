@@ -98,7 +98,7 @@ mod tests {
         let [k1, k2, p1, p2, k3, k4, k5, k6] = d;
         let (x, y) = (point.x / point.z, point.y / point.z);
         let factor = |r: f64| {
-            let (r2, r4, r6) = (r.powi(2), r.powi(4), r.powi(6));
+            let (r2, r4, r6) = (libm::pow(r, 2.0), libm::pow(r, 4.0), libm::pow(r, 6.0));
             (1.0 + k1 * r2 + k2 * r4 + k3 * r6) / (1.0 + k4 * r2 + k5 * r4 + k6 * r6)
         };
         let radius = (x * x + y * y).sqrt();

@@ -114,7 +114,10 @@ mod tests {
     /// the point.
     fn oracle(point: &Point3<f64>, [k1, k2, k3, k4]: [f64; 4]) -> Option<Point2<f64>> {
         let angle = libm::acos(point.z / point.coords.norm());
-        let radius = |t: f64| t + k1 * t.powi(3) + k2 * t.powi(5) + k3 * t.powi(7) + k4 * t.powi(9);
+        let terms = |t: f64| {
+            [(k1, 3.0), (k2, 5.0), (k3, 7.0), (k4, 9.0)].map(|(k, power)| k * libm::pow(t, power))
+        };
+        let radius = |t: f64| t + terms(t).iter().sum::<f64>();
         let at_step = |i: u32| radius(angle * f64::from(i) / 5000.0);
         if (1..=5000).any(|i| at_step(i) <= at_step(i - 1)) {
             return None;

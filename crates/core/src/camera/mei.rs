@@ -103,12 +103,12 @@ mod tests {
     /// The formula spelled out with angles; in view if the sphere's and the lens's image radius
     /// grew at each of many steps from the axis to the point.
     fn oracle(point: &Point3<f64>, [xi, k1, k2, p1, p2]: [f64; 5]) -> Option<Point2<f64>> {
-        let angle = libm::atan2((point.x.powi(2) + point.y.powi(2)).sqrt(), point.z);
+        let angle = libm::atan2(libm::hypot(point.x, point.y), point.z);
         let on_plane = |i: u32| {
             let t = angle * f64::from(i) / 5000.0;
             (libm::sin(t) / (libm::cos(t) + xi), libm::cos(t) + xi)
         };
-        let lens = |r: f64| r * (1.0 + k1 * r.powi(2) + k2 * r.powi(4));
+        let lens = |r: f64| r * (1.0 + k1 * libm::pow(r, 2.0) + k2 * libm::pow(r, 4.0));
         let grows = |i: u32| {
             let ((r, depth), (before, _)) = (on_plane(i), on_plane(i - 1));
             depth > 0.0 && r > before && lens(r) > lens(before)

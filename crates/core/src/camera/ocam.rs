@@ -167,8 +167,11 @@ mod tests {
     fn oracle(point: &Point3<f64>, polynomial: &[f64], max_angle: f64) -> Option<Point2<f64>> {
         let sign = polynomial[0].signum();
         let angle_at = |rho: f64| {
-            let f: f64 =
-                polynomial.iter().enumerate().map(|(i, a)| sign * a * rho.powi(i as i32)).sum();
+            let f: f64 = polynomial
+                .iter()
+                .enumerate()
+                .map(|(i, a)| sign * a * libm::pow(rho, i as f64))
+                .sum();
             libm::atan2(rho, f)
         };
         let angle = libm::acos(point.z / point.coords.norm());

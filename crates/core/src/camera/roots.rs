@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn crossing_survives_bad_starts_and_flat_slopes() {
-        let seventh = |x: f64| (x.powi(7) - 1e-7, 7.0 * x.powi(6));
+        let seventh = |x: f64| (libm::pow(x, 7.0) - 1e-7, 7.0 * libm::pow(x, 6.0));
         let mut solved = 0;
         for start in [0.0, 1e-300, 1e-3, 0.1, 5.0, 1e8] {
             let x = crossing(seventh, start, 1e8).unwrap();

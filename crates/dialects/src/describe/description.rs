@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, GridSpec};
+use occlabel_disk as disk;
 use occlabel_labels::GridRecord;
 use serde::Serialize;
 
@@ -163,8 +164,8 @@ fn beside(path: &Path, dialect: &Dialect, name: &str) -> PathBuf {
 
 /// The tree with a manifest that a file belongs to, and which of its keyframes.
 fn tree_of(path: &Path) -> Option<(LabelSet, usize)> {
-    let path = path.canonicalize().ok()?;
-    let is_root = |folder: &&Path| folder.join("manifest.json").is_file();
+    let path = disk::canonicalize(path).ok()?;
+    let is_root = |folder: &&Path| disk::is_file(&folder.join("manifest.json"));
     let set = LabelSet::open(path.ancestors().skip(1).find(is_root)?, None).ok()?;
     let semantics = set.dialect().layout.semantics_name().to_owned();
     let is_it = |key: &crate::KeyframeKey| set.place(key, &semantics) == path;

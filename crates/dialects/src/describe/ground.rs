@@ -67,7 +67,7 @@ impl GroundLevels {
         let mut levels = vec![0; height];
         for (at, column) in semantics.values().chunks_exact(height).enumerate() {
             let foot = spec.centre(VoxelIndex([(at / sides) as i64, (at % sides) as i64, 0]));
-            if foot.x.hypot(foot.y) <= NEAR_M {
+            if foot.x * foot.x + foot.y * foot.y <= NEAR_M * NEAR_M {
                 let classes = levels.iter_mut().zip(column);
                 classes.for_each(|(level, class)| *level += u64::from(flat[usize::from(*class)]));
             }

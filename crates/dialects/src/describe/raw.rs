@@ -1,6 +1,7 @@
 //! The numbers of a keyframe's files, before anything is made of them.
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_labels::{NpzFile, NumberArray, NumberType, read_bounded, read_npy};
 
 use crate::decode::Places;
@@ -49,7 +50,7 @@ fn numbers(
     let place = places(&array.name);
     match (layout, array.element) {
         (Layout::Npz(_), _) => NpzFile::open(&place, MAX_BYTES)?.array(&array.name, MAX_BYTES),
-        _ if !place.exists() => Ok(None),
+        _ if !disk::exists(&place) => Ok(None),
         (Layout::VoxelFiles(_), Element::Number(number)) => {
             let bytes = read_bounded(&place, MAX_BYTES)?;
             Ok(Some(NumberArray { number, shape: vec![bytes.len() / number.size()], bytes }))

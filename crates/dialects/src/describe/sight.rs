@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_labels::{NpyHeader, NpzFile, NumberType, read_npy};
 use serde::Serialize;
 
@@ -78,7 +79,7 @@ impl Sight {
 
     fn of_bytes(path: &Path) -> Result<Self, Fault> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().into_owned();
-        let bytes = path.metadata().map_err(|error| unreadable(path, &error))?.len() as usize;
+        let bytes = disk::metadata(path).map_err(|error| unreadable(path, &error))?.len() as usize;
         let number = Some(NumberType::U8.descr());
         let seen = SeenArray { name: ending, number, shape: vec![bytes] };
         Ok(Self { packing: Packing::Bytes, arrays: vec![seen] })
@@ -100,7 +101,7 @@ impl SeenArray {
 fn first_bytes(path: &Path) -> Result<[u8; 4], Fault> {
     use std::io::Read;
     let mut bytes = [0; 4];
-    let file = std::fs::File::open(path).map_err(|error| unreadable(path, &error))?;
+    let file = disk::open(path).map_err(|error| unreadable(path, &error))?;
     let mut start = Vec::new();
     file.take(4).read_to_end(&mut start).map_err(|error| unreadable(path, &error))?;
     bytes[..start.len()].copy_from_slice(&start);

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use occlabel_core::camera::{CameraModel, Intrinsics, Pinhole};
 use occlabel_core::{Camera, Exposure, Fault, Loss, NamedCamera, Pose, Timestamp};
+use occlabel_disk as disk;
 
 use super::poses::Mountings;
 use super::table::Table;
@@ -30,7 +31,7 @@ pub(super) fn read_cameras(
     notes: &mut Notes,
 ) -> Result<(Vec<NamedCamera>, Vec<Vec<Exposure>>), Fault> {
     let file = format!("{folder}{LENSES}");
-    if !root.join(&file).is_file() {
+    if !disk::is_file(&root.join(&file)) {
         notes.warn(Fault::new("camera-absent", file, "the lenses of cameras", "none"));
         return Ok(Default::default());
     }

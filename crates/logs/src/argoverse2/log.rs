@@ -1,10 +1,10 @@
 //! The logs of a folder, as a source of scenes.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
 use occlabel_core::{Exposure, Fault, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_disk as disk;
 
 use super::lidars::{Lidars, are_lasers, is_first};
 use super::poses::Mountings;
@@ -54,7 +54,7 @@ impl SceneSource for Argoverse2Log {
     fn tables(&self) -> Vec<String> {
         let of_log = |(_, folder): &(_, String)| TABLES.map(|table| format!("{folder}{table}"));
         let tables = self.folders.iter().flat_map(of_log);
-        tables.filter(|table| self.root.join(table).is_file()).collect()
+        tables.filter(|table| disk::is_file(&self.root.join(table))).collect()
     }
 
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {
@@ -125,17 +125,17 @@ fn find_logs(
     found: &mut Vec<(String, String)>,
 ) -> Result<(), Fault> {
     let here = root.join(&folder);
+    let place = here.display().to_string();
     if is_log(&here) {
-        let full = fs::canonicalize(&here).unwrap_or_else(|_| here.clone());
+        let full = disk::canonicalize(&here).map_err(|error| unreadable(&place, &error))?;
         let name = full.file_name().map(|name| name.to_string_lossy().into_owned());
         found.push((name.unwrap_or_default(), folder));
         return Ok(());
     }
-    let place = here.display().to_string();
-    for entry in fs::read_dir(&here).map_err(|error| unreadable(&place, &error))? {
-        let name = entry.map_err(|error| unreadable(&place, &error))?.file_name();
+    for entry in disk::list(&here).map_err(|error| unreadable(&place, &error))? {
+        let name = entry.file_name();
         let Some(name) = name.to_str().filter(|_| depth > 0) else { continue };
-        if here.join(name).is_dir() {
+        if disk::is_dir(&here.join(name)) {
             find_logs(root, format!("{folder}{name}/"), depth - 1, found)?;
         }
     }

@@ -4,6 +4,8 @@
 
 #[cfg(feature = "av2")]
 mod cameras;
+#[cfg(all(feature = "av2", any(test, fuzzing)))]
+pub(crate) mod doors;
 #[cfg(feature = "av2")]
 mod feather;
 #[cfg(feature = "av2")]

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader, Timestamp};
+use occlabel_disk as disk;
 
 use super::cameras::{LENSES, read_cameras};
 use super::lidars::Lidars;
@@ -29,7 +30,7 @@ pub(super) const TABLES: [&str; 4] = [POSES, BOXES, MOUNTINGS, LENSES];
 
 /// Whether a folder is a log.
 pub(super) fn is_log(folder: &Path) -> bool {
-    folder.join(POSES).is_file()
+    disk::is_file(&folder.join(POSES))
 }
 
 /// Everything of a scene but its points (labels.md section 2). `folder` ends with a `/`, or is empty.
@@ -51,7 +52,7 @@ pub(super) fn build_scene(
     let lidars = Lidars::of(&mountings)?;
     let ego_poses = ego_poses(root, &format!("{folder}{POSES}"), &mut notes)?;
     let boxes = format!("{folder}{BOXES}");
-    let (tracks, annotated) = match root.join(&boxes).is_file() {
+    let (tracks, annotated) = match disk::is_file(&root.join(&boxes)) {
         true => read_tracks(root, &boxes, options, &ego_poses, &mut notes)?,
         false => Default::default(),
     };

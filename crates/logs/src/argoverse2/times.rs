@@ -1,11 +1,11 @@
 //! Times that files are named by.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
 use crate::files::unreadable;
 
@@ -19,14 +19,14 @@ pub(super) fn files_by_time(
     folder: &str,
     endings: &[&str],
 ) -> Result<BTreeMap<i64, String>, Fault> {
-    let entries = match fs::read_dir(root.join(folder)) {
+    let entries = match disk::list(&root.join(folder)) {
         Ok(entries) => entries,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(BTreeMap::new()),
         Err(error) => return Err(unreadable(folder, &error)),
     };
     let mut times: BTreeMap<i64, String> = BTreeMap::new();
     for entry in entries {
-        let name = entry.map_err(|error| unreadable(folder, &error))?.file_name();
+        let name = entry.file_name();
         let Some(name) = name.to_str() else { continue };
         let number = endings.iter().find_map(|ending| name.strip_suffix(ending));
         let time = number.and_then(|number| number.parse::<i64>().ok());

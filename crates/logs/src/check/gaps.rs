@@ -4,7 +4,7 @@ use occlabel_core::{Fault, SweepHeader};
 
 use super::neighbours::{fault_between, neighbours, step_s};
 
-/// Sweeps follow each other within this time, seconds (docs/faults.md 18): over a longer one nobody
+/// Sweeps follow each other within this time, seconds (docs/reliability.md 18): over a longer one nobody
 /// knows where things went.
 pub(super) const LONGEST_STEP_S: f64 = 1.5;
 

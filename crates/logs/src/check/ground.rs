@@ -6,7 +6,7 @@ use occlabel_core::{Fault, SweepHeader};
 use super::plane::{Plane, planes, scattered};
 use super::rotation::ORDER_HINT;
 
-/// The ground's normal is within this of up, degrees (docs/faults.md 13).
+/// The ground's normal is within this of up, degrees (docs/reliability.md 13).
 const LARGEST_SLOPE_DEG: f64 = 15.0;
 /// Of the points on the best plane at least this share lies on the best level one, if the ground is
 /// level: a wall can hold more points than the ground, but not so many more.

@@ -4,7 +4,7 @@ use occlabel_core::{Fault, SweepHeader};
 
 use super::neighbours::{fault_between, moved_m, neighbours, step_s};
 
-/// No road vehicle is faster, metres per second (docs/faults.md 19).
+/// No road vehicle is faster, metres per second (docs/reliability.md 19).
 const FASTEST_MPS: f64 = 60.0;
 /// A shorter way is no jump but rounding between two times that are nearly the same, metres.
 const SHORTEST_JUMP_M: f64 = 0.5;

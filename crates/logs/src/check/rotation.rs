@@ -6,7 +6,7 @@ use occlabel_core::{Fault, SweepHeader};
 use super::gaps::LONGEST_STEP_S;
 use super::neighbours::{fault_between, neighbours, step_s};
 
-/// From one sweep to the next a vehicle turns by less, degrees (docs/faults.md 13).
+/// From one sweep to the next a vehicle turns by less, degrees (docs/reliability.md 13).
 const LARGEST_STEP_DEG: f64 = 30.0;
 /// No road is so steep, degrees: the steepest have 19.
 const LARGEST_TILT_DEG: f64 = 30.0;

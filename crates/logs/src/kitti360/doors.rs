@@ -1,10 +1,12 @@
 //! The parsers of logs in KITTI-360's layout, for whoever throws bytes at them.
 
+use occlabel_testkit::in_folder;
+
 use super::Kitti360Log;
 use super::boxes::read_objects;
 use super::fused::FusedLabels;
 use crate::SceneSource;
-use crate::doors::{in_folder, read_options};
+use crate::doors::read_options;
 
 /// The text files of a sound drive of three frames.
 const TEXTS: [(&str, &str); 7] = [

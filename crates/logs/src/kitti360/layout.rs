@@ -12,12 +12,12 @@
 //! ```
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
 use crate::files::unreadable;
 
@@ -104,7 +104,7 @@ impl Drive<'_> {
 
 /// Whether a folder is a log of this layout.
 pub(super) fn is_log(root: &Path) -> bool {
-    root.join(POINTS).is_dir()
+    disk::is_dir(&root.join(POINTS))
 }
 
 /// The names of the drives that have scans, in byte order.
@@ -113,7 +113,7 @@ pub(super) fn is_log(root: &Path) -> bool {
 /// If the folder cannot be listed, or there is none.
 pub(super) fn drives(root: &Path) -> Result<Vec<String>, Fault> {
     let mut names = entries(root, POINTS)?;
-    names.retain(|name| root.join(Drive(name).velodyne()).join("data").is_dir());
+    names.retain(|name| disk::is_dir(&root.join(Drive(name).velodyne()).join("data")));
     names.sort_unstable();
     if names.is_empty() {
         let expected = "data_3d_raw/<drive>/velodyne_points/data";
@@ -124,13 +124,9 @@ pub(super) fn drives(root: &Path) -> Result<Vec<String>, Fault> {
 
 /// The names in a folder; none if it is absent. One that is no UTF-8 is left out.
 fn entries(root: &Path, folder: &str) -> Result<Vec<String>, Fault> {
-    let listed = match fs::read_dir(root.join(folder)) {
+    let listed = match disk::list(&root.join(folder)) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         listed => listed.map_err(|error| unreadable(folder, &error))?,
     };
-    let name = |entry: std::io::Result<fs::DirEntry>| match entry {
-        Ok(entry) => Ok(entry.file_name().into_string().ok()),
-        Err(error) => Err(unreadable(folder, &error)),
-    };
-    listed.filter_map(|entry| name(entry).transpose()).collect()
+    Ok(listed.into_iter().filter_map(|entry| entry.file_name().into_string().ok()).collect())
 }

@@ -22,6 +22,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use nalgebra::Point3;
 use occlabel_core::{Exposure, Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_disk as disk;
 
 use crate::files::read_file;
 use crate::image_files::read_image_file;
@@ -96,7 +97,7 @@ impl Kitti360Log {
     fn labels_of(&self, sweep: &SweepHeader) -> Option<LabelSource> {
         let (loaded, drive, frame) = self.place(sweep).ok().filter(|_| sweep.labelled)?;
         let own = drive.labels(frame);
-        if self.root.join(&own).is_file() {
+        if disk::is_file(&self.root.join(&own)) {
             return Some(LabelSource::Scan(own));
         }
         let window = loaded.windows.iter().find(|(_, frames)| frames.contains(&frame));
@@ -161,7 +162,7 @@ impl SceneSource for Kitti360Log {
         };
         let tables = self.drives.iter().flat_map(of_drive);
         let tables = calibration::FILES.map(str::to_owned).into_iter().chain(tables);
-        tables.filter(|table| self.root.join(table).is_file()).collect()
+        tables.filter(|table| disk::is_file(&self.root.join(table))).collect()
     }
 
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {

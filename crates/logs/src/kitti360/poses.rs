@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use occlabel_core::{Fault, Loss, Pose, slerp};
+use occlabel_disk as disk;
 
 use super::calibration::Calibration;
 use super::cameras::rectification;
@@ -43,7 +44,7 @@ impl Poses {
     ) -> Result<Self, Fault> {
         let [of_imu, of_camera] = drive.poses();
         let imu_from_ego = calibration.ego_from_imu.inverse();
-        if root.join(&of_imu).is_file() || !root.join(&of_camera).is_file() {
+        if disk::is_file(&root.join(&of_imu)) || !disk::is_file(&root.join(&of_camera)) {
             let read = |line: &str| {
                 let [number, rows @ ..] = numbers::<13>(line)?;
                 let rows = rows.first_chunk().ok_or("no rows")?;

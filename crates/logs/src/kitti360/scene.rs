@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader};
+use occlabel_disk as disk;
 
 use super::LIDAR;
 use super::calibration::Calibration;
@@ -121,7 +122,7 @@ impl Parts<'_> {
             file: self.drive.scan(frame),
             world_from_ego,
             ego_from_lidar: self.calibration.ego_from_lidar,
-            labelled: is_fused || self.root.join(self.drive.labels(frame)).is_file(),
+            labelled: is_fused || disk::is_file(&self.root.join(self.drive.labels(frame))),
         })
     }
 

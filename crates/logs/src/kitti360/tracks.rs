@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use occlabel_core::{BoxTrack, Fault, Loss, SweepHeader, Timestamp};
+use occlabel_disk as disk;
 
 use super::boxes::{Frames, Object, read_objects};
 use super::classes::movable_name;
@@ -25,7 +26,7 @@ pub(super) fn read_tracks(
     sweeps: &BTreeMap<usize, SweepHeader>,
     notes: &mut Notes,
 ) -> Result<Vec<BoxTrack>, Fault> {
-    if !root.join(file).is_file() {
+    if !disk::is_file(&root.join(file)) {
         notes.warn(Fault::new("boxes-absent", file, "the boxes of the drive", "none"));
         return Ok(Vec::new());
     }

@@ -1,5 +1,7 @@
 //! The parsers of MCAP logs, for whoever throws bytes at them.
 
+use occlabel_testkit::in_folder;
+
 use super::cameras::model;
 use super::container::{Message, MessageAt};
 use super::contents::{Channel, Schema};
@@ -9,7 +11,6 @@ use super::points::Points;
 use super::samples::{TELLINGS, drive, file, options};
 use super::{McapLog, McapOptions};
 use crate::SceneSource;
-use crate::doors::in_folder;
 
 /// A whole file, read as far as it goes; whether it was whole.
 pub(crate) fn read_file(bytes: &[u8]) -> bool {

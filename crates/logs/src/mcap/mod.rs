@@ -44,11 +44,11 @@ mod sweeps;
 mod tracks;
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use occlabel_core::{Exposure, Fault, McapSettings, Scene, SweepHeader, reference_lidar};
+use occlabel_disk as disk;
 
 use crate::files::unreadable;
 use crate::names::{nearest_names, quoted};
@@ -204,10 +204,9 @@ pub(crate) fn has_files(root: &Path) -> bool {
 fn mcap_files(root: &Path) -> Result<Vec<String>, Fault> {
     let place = root.display().to_string();
     let mut files = Vec::new();
-    for entry in fs::read_dir(root).map_err(|error| unreadable(&place, &error))? {
-        let entry = entry.map_err(|error| unreadable(&place, &error))?;
+    for entry in disk::list(root).map_err(|error| unreadable(&place, &error))? {
         let name = entry.file_name().into_string().ok();
-        let is_file = |name: &String| name.ends_with(ENDING) && entry.path().is_file();
+        let is_file = |name: &String| name.ends_with(ENDING) && disk::is_file(&entry.path());
         files.extend(name.filter(is_file));
     }
     files.sort_unstable();

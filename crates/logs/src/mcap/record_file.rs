@@ -1,11 +1,11 @@
 //! A file of records, each with its kind and length.
 
-use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use mcap::records::Record;
 use occlabel_core::Fault;
+use occlabel_disk::File;
 
 use super::record::parse;
 use crate::files::{open_file, unreadable};

@@ -40,17 +40,27 @@ pub(super) fn resolve(root: &Path, file: &str, settings: &McapSettings) -> Resul
         }
     };
     let broken = container.first_of_each(&contents, reads(Purpose::Sweeps), takes).err();
+    [&cut, &broken].into_iter().try_for_each(refuse_unread)?;
     if recording.clouds.is_empty() {
         return Err(refused.or(broken).or(cut).unwrap_or_else(|| no_clouds(file)));
     }
     if settings.world_frame == AUTO || settings.ego_frame == AUTO {
         // What is broken or refused here is told of when the scene is read.
         let each = |message: _| recording.take_links(&message, &mut Notes::default());
-        let _ = container.visit(&contents, reads(Purpose::Transforms), each);
+        let visited = container.visit(&contents, reads(Purpose::Transforms), each);
+        refuse_unread(&visited.err())?;
         recording.frames.finish();
     }
     let lidars = lidar_names(&recording.clouds, settings).into_values().collect();
     Ok(Told { lidars, roles: FrameRoles::find(&recording, settings).ok() })
+}
+
+/// What a disk does not give may be what tells: a file that is broken tells the same each time.
+fn refuse_unread(fault: &Option<Fault>) -> Result<(), Fault> {
+    match fault {
+        Some(fault) if fault.rule == "unreadable-file" => Err(fault.clone()),
+        _ => Ok(()),
+    }
 }
 
 fn no_clouds(file: &str) -> Fault {

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
 use super::rows::{Lidarseg, Panoptic};
 use super::table::{Row, Table, read_table};
@@ -70,7 +71,7 @@ pub(super) fn read_label_files(folder: &Path) -> Result<LabelFiles, Fault> {
 
 fn read_one<T: LabelTable>(folder: &Path) -> Result<LabelFiles, Fault> {
     let mut files = LabelFiles::new();
-    if !folder.join(T::FILE).exists() {
+    if !disk::exists(&folder.join(T::FILE)) {
         return Ok(files);
     }
     read_table(

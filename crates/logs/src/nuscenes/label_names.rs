@@ -13,6 +13,7 @@ use super::table::Row;
 /// # Errors
 /// If a category has no `index`, or that of another.
 pub(super) fn label_names(log: &NuScenesLog) -> Result<BTreeMap<u16, &str>, Fault> {
+    #[expect(clippy::disallowed_methods, reason = "sorted below")]
     let mut rows: Vec<_> = log.tables.categories.values().collect();
     rows.sort_by_key(|row| row.offset);
     let mut names = BTreeMap::new();

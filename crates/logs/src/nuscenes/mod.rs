@@ -8,6 +8,8 @@ mod cameras;
 mod captures;
 mod chains;
 mod copies;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod doors;
 mod keyframes;
 mod label_files;
 mod label_names;
@@ -170,6 +172,7 @@ impl SceneSource for NuScenesLog {
 
 fn defaults(folder: &Path) -> Result<ReaderDefaults, Fault> {
     let sensors: HashMap<Token, table::Row<rows::Sensor>> = table::read_keyed(folder, |_| true)?;
+    #[expect(clippy::disallowed_methods, reason = "of their names the least is taken")]
     let lidars = sensors.values().filter(|sensor| sensor.modality == "lidar");
     let names: Vec<String> = lidars.map(|lidar| lidar.channel.clone()).collect();
     let none = || Fault::new("reference-lidar", "sensor.json", "a lidar", "none");

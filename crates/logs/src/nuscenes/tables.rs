@@ -219,7 +219,9 @@ fn other_sensors(
         let sensor = sensors.get(&calibration.sensor_token);
         sensor.is_some_and(|sensor| !matches!(sensor.modality.as_str(), "lidar" | "camera"))
     };
-    calibrations.values().filter(is_other).map(|row| row.token.clone()).collect()
+    #[expect(clippy::disallowed_methods, reason = "a set comes of it")]
+    let calibrations = calibrations.values();
+    calibrations.filter(is_other).map(|row| row.token.clone()).collect()
 }
 
 /// The ego poses that sweeps and images of the wanted scenes name.

@@ -3,6 +3,8 @@
 //! docs/semantickitti.md names every file that is read. There are no boxes and no tracks.
 
 mod classes;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod doors;
 mod mounting;
 mod scene;
 mod sequences;
@@ -14,6 +16,7 @@ pub(crate) use tables::{pose as line_of_pose, time as line_of_time};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, LIDAR_ORIGIN, PointCloud, PointLabel, Scene, SweepHeader};
+use occlabel_disk as disk;
 
 use crate::files::read_file;
 use crate::kitti_labels::{class_name, decode_labels};
@@ -88,7 +91,7 @@ impl SceneSource for SemanticKittiLog {
 
     fn tables(&self) -> Vec<String> {
         let tables = self.sequences.iter().flat_map(Sequence::tables);
-        tables.filter(|table| self.root.join(table).is_file()).collect()
+        tables.filter(|table| disk::is_file(&self.root.join(table))).collect()
     }
 
     fn sweep_files(&self, sweep: &SweepHeader) -> Vec<String> {

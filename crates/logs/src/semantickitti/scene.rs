@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use occlabel_core::{Fault, Loss, Scene, SweepHeader};
+use occlabel_disk as disk;
 
 use super::LIDAR;
 use super::sequences::{Sequence, label_file};
@@ -58,7 +59,7 @@ fn sweep_header(
         ego_from_lidar: tables.ego_from_lidar,
         labelled: false,
     };
-    header.labelled = label_file(&header).is_some_and(|file| root.join(file).is_file());
+    header.labelled = label_file(&header).is_some_and(|file| disk::is_file(&root.join(file)));
     Ok(header)
 }
 

@@ -1,10 +1,10 @@
 //! The sequences of a folder, and the names of their files.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 
 use occlabel_core::{Fault, SweepHeader};
+use occlabel_disk as disk;
 
 use crate::files::unreadable;
 
@@ -73,16 +73,16 @@ pub(super) fn label_file(sweep: &SweepHeader) -> Option<String> {
 /// # Errors
 /// If there is none.
 pub(super) fn sequences(root: &Path) -> Result<Vec<Sequence>, Fault> {
-    let has_scans = |folder: &Path| folder.join(SCANS).is_dir();
+    let has_scans = |folder: &Path| disk::is_dir(&folder.join(SCANS));
     let mut found = Vec::new();
-    if root.join(SEQUENCES).is_dir() {
+    if disk::is_dir(&root.join(SEQUENCES)) {
         let mut names = entries(&root.join(SEQUENCES), SEQUENCES)?;
         names.sort_unstable();
         names.retain(|name| has_scans(&root.join(SEQUENCES).join(name)));
         let sequence = |name| Sequence { folder: format!("{SEQUENCES}/{name}/"), name };
         found.extend(names.into_iter().map(sequence));
     } else if has_scans(root) {
-        found.push(Sequence { name: own_name(root), folder: String::new() });
+        found.push(Sequence { name: own_name(root)?, folder: String::new() });
     }
     if found.is_empty() {
         let expected = "sequences/<name>/velodyne, or velodyne of one sequence";
@@ -93,17 +93,14 @@ pub(super) fn sequences(root: &Path) -> Result<Vec<Sequence>, Fault> {
 }
 
 /// The name of a folder, however it is written.
-fn own_name(folder: &Path) -> String {
-    let full = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
-    full.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+fn own_name(folder: &Path) -> Result<String, Fault> {
+    let place = folder.display().to_string();
+    let full = disk::canonicalize(folder).map_err(|error| unreadable(&place, &error))?;
+    Ok(full.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
 }
 
 /// The names in a folder. One that is no UTF-8 is left out.
 fn entries(folder: &Path, place: &str) -> Result<Vec<String>, Fault> {
-    let listed = fs::read_dir(folder).map_err(|error| unreadable(place, &error))?;
-    let name = |entry: std::io::Result<fs::DirEntry>| match entry {
-        Ok(entry) => Ok(entry.file_name().into_string().ok()),
-        Err(error) => Err(unreadable(place, &error)),
-    };
-    listed.filter_map(|entry| name(entry).transpose()).collect()
+    let listed = disk::list(folder).map_err(|error| unreadable(place, &error))?;
+    Ok(listed.into_iter().filter_map(|entry| entry.file_name().into_string().ok()).collect())
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use occlabel_core::{Fault, SweepHeader, Timestamp};
+use occlabel_disk as disk;
 
 use super::calibration::LidarNumbers;
 use super::component_images::POSES;
@@ -77,7 +78,7 @@ impl Components {
     pub(super) fn tables(&self, segment: &str) -> impl Iterator<Item = String> {
         let components = [VEHICLE_POSE, LIDAR_CALIBRATION, "camera_calibration", "lidar_box"];
         let files = components.map(|component| file(component, segment));
-        files.into_iter().filter(|file| self.root.join(file).is_file())
+        files.into_iter().filter(|file| disk::is_file(&self.root.join(file)))
     }
 
     /// Everything of a segment but its points; `None` if there is no such segment.

@@ -1,13 +1,14 @@
 //! Which version of the format a folder holds, told by what its files begin with.
 
-use std::fs::{self, File};
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
 use super::tfrecord::is_record_head;
-use crate::files::unreadable;
+use crate::files::{open_file, unreadable};
 
 /// The version, and its files.
 #[derive(Debug)]
@@ -30,13 +31,12 @@ impl Layout {
     /// If it holds neither version, or both.
     pub(super) fn of_folder(root: &Path) -> Result<Self, Fault> {
         let named = |name: &String| name.ends_with(".tfrecord");
-        let records: Vec<String> = files(root)?
-            .into_iter()
-            .filter(|name| named(name) || is_record_head(&head(&root.join(name))))
-            .collect();
+        let mut records = files(root)?;
+        let begun = heads(root, &records)?;
+        records.retain(|name| named(name) || is_record_head(&begun[name]));
         let poses = root.join(VEHICLE_POSE);
-        let components = if poses.is_dir() { files(&poses)? } else { Vec::new() };
-        let is_v2 = components.iter().any(|name| head(&poses.join(name)).starts_with(PARQUET));
+        let components = if disk::is_dir(&poses) { files(&poses)? } else { Vec::new() };
+        let is_v2 = heads(&poses, &components)?.values().any(|head| head.starts_with(PARQUET));
         let expected = "TFRecord files (v1), or folders of Parquet files such as vehicle_pose (v2)";
         let fault = |found| Fault::new("waymo-layout", root.display().to_string(), expected, found);
         match (records.is_empty(), is_v2) {
@@ -52,9 +52,8 @@ impl Layout {
 pub(super) fn files(folder: &Path) -> Result<Vec<String>, Fault> {
     let place = folder.display().to_string();
     let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(|error| unreadable(&place, &error))? {
-        let entry = entry.map_err(|error| unreadable(&place, &error))?;
-        if entry.path().is_file() {
+    for entry in disk::list(folder).map_err(|error| unreadable(&place, &error))? {
+        if disk::is_file(&entry.path()) {
             names.extend(entry.file_name().into_string().ok());
         }
     }
@@ -62,10 +61,14 @@ pub(super) fn files(folder: &Path) -> Result<Vec<String>, Fault> {
     Ok(names)
 }
 
-/// A file's first bytes; none if it cannot be read.
-fn head(path: &Path) -> Vec<u8> {
-    let mut head = Vec::new();
-    // What cannot be read is told when it is asked for.
-    let _ = File::open(path).and_then(|file| file.take(12).read_to_end(&mut head));
-    head
+/// The first bytes of a folder's files, by their names.
+fn heads(folder: &Path, names: &[String]) -> Result<BTreeMap<String, Vec<u8>>, Fault> {
+    let head = |name: &String| {
+        let mut head = Vec::new();
+        let file = open_file(&folder.join(name), name)?;
+        let read = file.take(12).read_to_end(&mut head);
+        read.map_err(|error| unreadable(name, &error))?;
+        Ok((name.clone(), head))
+    };
+    names.iter().map(head).collect()
 }

@@ -11,6 +11,8 @@ mod component_images;
 #[cfg(feature = "waymo-v2")]
 mod components;
 pub(crate) mod compressed;
+#[cfg(all(feature = "waymo-v2", any(test, fuzzing)))]
+pub(crate) mod doors;
 mod frame;
 mod layout;
 mod matrix;

@@ -8,6 +8,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use parquet::errors::Result as ParquetResult;
 use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -37,7 +38,7 @@ impl Table {
     /// # Errors
     /// If it is absent (`missing-file`), or no Parquet file.
     pub(super) fn open(root: &Path, file: String) -> Result<Self, Fault> {
-        let opened = open_file(&root.join(&file), &file)?;
+        let opened = disk::into_std(open_file(&root.join(&file), &file)?);
         let fault = |found: String| Fault::new("parquet", &file, "a Parquet file", found);
         let reader = guarded(|| SerializedFileReader::new(opened));
         let reader = reader.map_err(|error| fault(error.to_string()))?;

@@ -6,10 +6,10 @@
 //!
 //! Source: tensorflow.org, "TFRecord and tf.train.Example".
 
-use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
 use occlabel_core::Fault;
+use occlabel_disk::File;
 
 use crate::wire::Span;
 

@@ -5,11 +5,11 @@
 //! once more, whole and with its checksum verified, when points are asked for.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::{Fault, SweepHeader, Timestamp};
+use occlabel_disk::File;
 
 use super::calibration::Context;
 use super::compressed::{floats, integers};
@@ -108,10 +108,13 @@ impl TfRecords {
     }
 
     fn read_segment(&self, index: &SegmentIndex) -> Result<Segment, Fault> {
-        let is_copy = |i: &usize| *i > 0 && self.is_copy(&index.frames[i - 1], &index.frames[*i]);
-        let (copies, once): (Vec<usize>, Vec<usize>) = (0..index.frames.len()).partition(is_copy);
-        let warnings = copies.into_iter().map(|i| copied(&index.frames[i])).collect();
-        let frames: Vec<_> = once.into_iter().map(|i| self.frame(&index.frames[i])).collect();
+        let (mut copies, mut once) = (Vec::new(), Vec::new());
+        for (i, frame) in index.frames.iter().enumerate() {
+            let is_copy = i > 0 && self.is_copy(&index.frames[i - 1], frame)?;
+            if is_copy { copies.push(frame) } else { once.push(frame) }
+        }
+        let warnings = copies.into_iter().map(copied).collect();
+        let frames: Vec<_> = once.into_iter().map(|frame| self.frame(frame)).collect();
         let context = frames.iter().flatten().next().map(|(_, context)| context.clone());
         let Some(Context { lidars, cameras }) = context else {
             let none = || Fault::new("frame-message", ".", "a frame", "none");
@@ -122,13 +125,14 @@ impl TfRecords {
     }
 
     /// Whether a frame is the same as the one before it, byte for byte.
-    fn is_copy(&self, before: &FrameAt, frame: &FrameAt) -> bool {
-        let data = |at: &FrameAt| {
-            let mut file = open_file(&self.root.join(&at.file), &at.file).ok()?;
-            read_record(&mut file, at.record(), &at.file).ok()
-        };
+    fn is_copy(&self, before: &FrameAt, frame: &FrameAt) -> Result<bool, Fault> {
         let alike = |at: &FrameAt| (at.micros, at.record().len());
-        alike(before) == alike(frame) && data(before).is_some_and(|one| data(frame) == Some(one))
+        Ok(alike(before) == alike(frame) && self.data(before)? == self.data(frame)?)
+    }
+
+    fn data(&self, at: &FrameAt) -> Result<Vec<u8>, Fault> {
+        let mut file = open_file(&self.root.join(&at.file), &at.file)?;
+        read_record(&mut file, at.record(), &at.file)
     }
 
     fn frame(&self, at: &FrameAt) -> Result<(Frame, Context), Fault> {

@@ -71,7 +71,7 @@ fn section_2_boxes_stand_in_the_frames_vehicle_and_tracks_go_by_the_bytes_of_the
     // Heading 0.4 at (9, 4, 0.9) in the vehicle's frame: 2 m before the centre is the front.
     let front =
         scene.sweeps[9].world_from_ego.inverse() * car.world_from_box * Point3::new(2.0, 0.0, 0.0);
-    let expected = Point3::new(9.0 + 2.0 * 0.4_f64.cos(), 4.0 + 2.0 * 0.4_f64.sin(), 0.9);
+    let expected = Point3::new(9.0 + 2.0 * libm::cos(0.4), 4.0 + 2.0 * libm::sin(0.4), 0.9);
     assert!((front - expected).norm() < 1e-9, "{front}");
 }
 
@@ -127,10 +127,11 @@ fn cameras_look_along_their_x_at_their_own_times() {
     // for 0.02 s, and is turned by 0.41.
     let ahead = exposure.world_from_camera * Point3::new(0.0, 0.0, 10.0);
     let here = exposure.world_from_camera * Point3::origin();
-    let heading = (ahead.y - here.y).atan2(ahead.x - here.x);
+    let heading = libm::atan2(ahead.y - here.y, ahead.x - here.x);
     assert!((heading - (0.78 + 0.41)).abs() < 0.01, "{heading}");
     assert!(
-        (here.x - 1200.0 - 9.0 * 0.02 - (1.5 * 0.41_f64.cos() - 0.2 * 0.41_f64.sin())).abs() < 0.05
+        (here.x - 1200.0 - 9.0 * 0.02 - (1.5 * libm::cos(0.41) - 0.2 * libm::sin(0.41))).abs()
+            < 0.05
     );
     let below = exposure.world_from_camera * Point3::new(0.0, 1.0, 0.0);
     assert!(here.z - below.z > 0.99, "y is down");

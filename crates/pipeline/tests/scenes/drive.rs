@@ -115,7 +115,7 @@ pub(crate) fn track(id: u16, class: ClassId, boxes: Vec<(Timestamp, Box3)>) -> B
 /// A pinhole that sees `half_angle_rad` to each side of its axis, in a square image.
 pub(crate) fn camera(name: &str, pixels: u32, half_angle_rad: f64) -> NamedCamera {
     let half = f64::from(pixels) / 2.0;
-    let focal = half / half_angle_rad.tan();
+    let focal = half / libm::tan(half_angle_rad);
     let k = [[focal, 0.0, half], [0.0, focal, half], [0.0, 0.0, 1.0]];
     let intrinsics = Intrinsics::from_matrix(&k).expect("a matrix of a camera");
     let camera = Camera {

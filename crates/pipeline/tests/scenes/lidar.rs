@@ -12,7 +12,8 @@ pub(crate) fn directions(step_deg: f64) -> Vec<Vector3<f64>> {
     let direction = |row: usize, column: usize| {
         let polar = ((row as f64 + 0.47) * step_deg).to_radians();
         let azimuth = ((column as f64 + 0.31) * step_deg).to_radians();
-        Vector3::new(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos())
+        let ((flat, up), (left, ahead)) = (libm::sincos(polar), libm::sincos(azimuth));
+        Vector3::new(flat * ahead, flat * left, up)
     };
     (0..rows).flat_map(|row| (0..columns).map(move |column| direction(row, column))).collect()
 }

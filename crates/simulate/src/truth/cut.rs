@@ -42,21 +42,21 @@ impl Cut {
         let whole: f64 = depths.iter().product();
         // The area is the volume's slope: powers one lower, without the factor of the power.
         let lower: f64 = [1.0, 1.0, 2.0][count - 1];
-        let share = corners(depths, reach, count as i32) / (lower * count as f64 * whole);
-        let area_m2 = corners(depths, reach, count as i32 - 1) * volume / (lower * whole);
+        let share = corners(depths, reach, count) / (lower * count as f64 * whole);
+        let area_m2 = corners(depths, reach, count - 1) * volume / (lower * whole);
         Self { share: share.clamp(0.0, 1.0), area_m2: area_m2.max(0.0) }
     }
 }
 
 /// Sum over the corners that the plane has passed, of `(reach - depth of the corner)^power`, signs
 /// alternating with each edge on the way to the corner.
-fn corners(depths: &[f64], reach: f64, power: i32) -> f64 {
+fn corners(depths: &[f64], reach: f64, power: usize) -> f64 {
     (0..1_u32 << depths.len())
         .map(|corner| {
             let edges = (0..depths.len()).filter(|edge| corner >> edge & 1 == 1);
             let beyond = reach - edges.map(|edge| depths[edge]).sum::<f64>();
             let sign = if corner.count_ones() % 2 == 0 { 1.0 } else { -1.0 };
-            if beyond > 0.0 { sign * beyond.powi(power) } else { 0.0 }
+            if beyond > 0.0 { sign * [beyond; 3][..power].iter().product::<f64>() } else { 0.0 }
         })
         .sum()
 }
@@ -88,7 +88,7 @@ mod tests {
         // Corner (1, 1.5, 0.5) in front of a plane that cuts 0.6 off each edge: all else is behind.
         let distance_m = -(3.0 - 0.6) / 3.0_f64.sqrt();
         let side = 0.6 * 2.0_f64.sqrt();
-        let tetrahedron = 0.6_f64.powi(3) / 6.0 / 6.0;
+        let tetrahedron = 0.6 * 0.6 * 0.6 / 6.0 / 6.0;
         assert_cut(
             [1.0, 1.0, 1.0],
             distance_m,

@@ -154,9 +154,10 @@ mod tests {
         let extrinsic = lidar.ego_from_format.to_homogeneous();
         let width = lidar.columns.len() as f64;
         let share = (width - column as f64 - 0.5) / width;
-        let azimuth = (2.0 * share - 1.0) * PI - f64::atan2(extrinsic[(1, 0)], extrinsic[(0, 0)]);
+        let azimuth = (2.0 * share - 1.0) * PI - libm::atan2(extrinsic[(1, 0)], extrinsic[(0, 0)]);
         let up = lidar.inclinations_rad[lidar.inclinations_rad.len() - 1 - row];
-        let seen = Vector3::new(up.cos() * azimuth.cos(), up.cos() * azimuth.sin(), up.sin());
+        let ((rise, flat), (left, ahead)) = (libm::sincos(up), libm::sincos(azimuth));
+        let seen = Vector3::new(flat * ahead, flat * left, rise);
         (extrinsic * seen.push(0.0)).xyz()
     }
 
