@@ -15,14 +15,15 @@ pub(crate) fn differences_from_others(
 ) -> Result<Vec<String>, Fault> {
     let mut shards = shards_in(files.tree(), "manifest")?;
     shards.extend(shards_in(files.tree(), "run")?);
-    let other_count = shards.iter().find(|(_, count)| Some(*count) != files.shard_count());
-    if let Some((_, count)) = other_count {
-        let now = files.shard_count().map_or_else(|| "none".to_owned(), |count| count.to_string());
+    shards.retain(|shard| Some(*shard) != files.as_shard());
+    let now_count = files.as_shard().map(|(_, count)| count);
+    if let Some((_, count)) = shards.iter().find(|(_, count)| Some(*count) != now_count) {
+        let now = now_count.map_or_else(|| "none".to_owned(), |count| count.to_string());
         return Ok(vec![format!("shards: {count} before, {now} now")]);
     }
     // Those that are there were compared with each other when they began.
     let one = shards.first().map(|&(at, count)| RunFiles::shard(files.tree().clone(), at, count));
-    let whole = files.shard_count().map(|_| RunFiles::whole(files.tree().clone()));
+    let whole = now_count.map(|_| RunFiles::whole(files.tree().clone()));
     let mut found = Vec::new();
     for other in one.into_iter().chain(whole) {
         found.extend(Earlier::load(&other)?.differences_in_kind(now));

@@ -35,9 +35,9 @@ impl RunFiles {
         &self.tree
     }
 
-    /// How many shards there are, if it is one.
-    pub(crate) fn shard_count(&self) -> Option<usize> {
-        self.shard.map(|(_, count)| count)
+    /// Which shard of how many it is, if it is one.
+    pub(crate) fn as_shard(&self) -> Option<(usize, usize)> {
+        self.shard
     }
 
     /// Whether it is a part of a larger run.
