@@ -140,5 +140,5 @@ fn fault_05_a_pipe_in_place_of_a_sweep_is_refused_and_waits_for_nobody() {
     log.remove(&file);
     let made = std::process::Command::new("mkfifo").arg(log.file(&file)).status();
     assert!(made.expect("mkfifo").success());
-    assert_refused(&label(&log), &[&file, "expected a file"]);
+    label(&log).run().exits(1).tells(&[&file, "expected a file"]);
 }
