@@ -97,7 +97,8 @@ mod tests {
             tree.write(&path, token.as_bytes()).unwrap()
         };
         let files = vec![file("k1"), file("k2")];
-        (folder, tree, Manifest { files, ..manifest() })
+        let inputs_hash = manifest().input_hashes.whole();
+        (folder, tree, Manifest { files, inputs_hash, ..manifest() })
     }
 
     #[test]
@@ -155,6 +156,11 @@ mod tests {
         let told: Vec<_> = verify_manifest(&manifest).iter().map(ToString::to_string).collect();
         assert_eq!(told.len(), 2);
         assert!(told[0].contains("config_hash") && told[1].contains("s/k2"), "{told:?}");
+        manifest.inputs_hash = "0".repeat(64);
+        manifest.files.push(manifest.files[0].clone());
+        let told: Vec<_> = verify_manifest(&manifest).iter().map(ToString::to_string).collect();
+        assert!(told[1].contains("inputs_hash") && told[2].contains("each file once"), "{told:?}");
+        (manifest.inputs_hash, _) = (manifest.input_hashes.whole(), manifest.files.pop());
         manifest.scenes.insert("s".to_owned(), SceneRecord::default());
         let told = verify_manifest(&manifest)[1].to_string();
         assert!(told.contains("expected files of listed keyframes, found s/k1"), "{told}");
