@@ -162,6 +162,40 @@ fn shards_that_end_late_are_merged_in_later() {
     assert_eq!(names(&whole), names(&shared));
 }
 
+#[test]
+fn fault_40_a_tree_holds_one_run_whole_or_in_shards() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let (whole, shared) = (log.beside("whole"), log.beside("shared"));
+    let label = |output, more: &[&str]| Label::new(&log.root(), output).small().with(more).run();
+    let other = ["--set", "raycast.outside=drop"];
+    label(&whole, &[]).exits(0);
+    let before = tree_hash(&whole);
+    label(&whole, &[&other[..], &["--shard", "0/2"]].concat()).exits(2).tells(&["raycast.outside"]);
+    assert_eq!(tree_hash(&whole), before, "nothing is written over");
+    label(&shared, &["--shard", "0/2"]).exits(0);
+    label(&shared, &[&other[..], &["--shard", "1/2"]].concat())
+        .exits(2)
+        .tells(&["raycast.outside"]);
+    label(&shared, &["--shard", "1/3"]).exits(2).tells(&["shards: 2 before, 3 now"]);
+    label(&shared, &[]).exits(2).tells(&["shards: 2 before, none now", "merge-manifests"]);
+    label(&shared, &["--resume", "never"]).exits(2);
+    label(&shared, &["--shard", "1/2"]).exits(0);
+    merge(&shared).exits(0);
+    assert_eq!(tree_hash(&shared), before);
+}
+
+#[test]
+fn shards_of_two_runs_are_not_merged() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(2));
+    let shared = log.beside("shared");
+    for shard in ["0/1", "0/2"] {
+        let label = Label::new(&log.root(), &shared).small();
+        label.with(&["--shard", shard, "--resume", "always"]).run().exits(0);
+    }
+    merge(&shared).exits(2).tells(&["shards of 1, and of 2"]);
+    assert!(!shared.join("manifest.json").exists());
+}
+
 fn merge(tree: &std::path::Path) -> Ended {
     occlabel(&["merge-manifests", text(tree)])
 }

@@ -61,6 +61,28 @@ fn what_is_changed_missing_or_extra_is_told_by_file_and_keyframe() {
 }
 
 #[test]
+fn a_manifest_that_contradicts_itself_is_told() {
+    let (_log, label) = labelled(&[]);
+    let path = label.output.join("manifest.json");
+    let sound: Value = serde_json::from_slice(&fs::read(&path).expect("a manifest")).expect("JSON");
+    let breaks: [fn(&mut Value); 3] = [
+        |manifest| manifest["inputs_hash"] = json!("0".repeat(64)),
+        |manifest| manifest["config_hash"] = json!("0".repeat(64)),
+        |manifest| {
+            let file = manifest["files"][0].clone();
+            manifest["files"].as_array_mut().expect("files").insert(0, file);
+        },
+    ];
+    for spoil in breaks {
+        let mut manifest = sound.clone();
+        spoil(&mut manifest);
+        fs::write(&path, manifest.to_string()).expect("written");
+        let told = verify(&label.output, &[]).exits(1).stdout;
+        assert!(told.contains("manifest.json"), "{told}");
+    }
+}
+
+#[test]
 fn the_list_of_keyframes_to_redo_makes_the_tree_whole() {
     let (log, label) = labelled(&["--evidence"]);
     let (hash, list) = (tree_hash(&label.output), log.beside("redo.txt"));

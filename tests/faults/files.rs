@@ -130,3 +130,15 @@ fn fault_05_an_absent_key_sweep_is_not_allowed_only_skipped() {
     let ended = assert_skipped(&label_into(&log, "skip"), "keyframe", &keyframes_without(&log, 0));
     ended.tells(&[file, token]);
 }
+
+/// Nobody writes to it: who opened it would wait for ever. The next scene's files are read ahead.
+#[cfg(unix)]
+#[test]
+fn fault_05_a_pipe_in_place_of_a_sweep_is_refused_and_waits_for_nobody() {
+    let log = TestLog::simulated(&crate::support::nano_spec().with_scenes(2));
+    let file = log.other_files().last().expect("a sweep").clone();
+    log.remove(&file);
+    let made = std::process::Command::new("mkfifo").arg(log.file(&file)).status();
+    assert!(made.expect("mkfifo").success());
+    label(&log).run().exits(1).tells(&[&file, "expected a file"]);
+}

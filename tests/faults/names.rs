@@ -89,3 +89,16 @@ fn fault_36_a_hostile_keyframe_token_is_refused_and_escaped() {
     }
     assert_clean(&assert_refused(&label(&log), &["A-Z, a-z"]));
 }
+
+#[test]
+fn fault_36_a_scene_name_too_long_for_a_folder_costs_that_scene_only() {
+    let log = TestLog::simulated(&crate::support::nano_spec().with_scenes(2));
+    log.edit("scene", |rows| rows[0]["name"] = json!("n".repeat(300)));
+    let scene = text_of(&log.rows("scene")[1]["name"]);
+    label_into(&log, "skip").with(&SKIP).run().exits(3).tells(&["name"]);
+    assert!(log.beside("skip").join("gts").join(scene).is_dir());
+}
+
+fn text_of(value: &serde_json::Value) -> String {
+    value.as_str().expect("text").to_owned()
+}

@@ -95,7 +95,9 @@ fn tell_panic(panic: &PanicHookInfo) {
 fn explain(usage: &clap::Error, as_json: bool) -> ExitCode {
     if usage.use_stderr() && as_json {
         let text = usage.to_string();
-        let found = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        let told = text.lines().take_while(|line| !line.starts_with("Usage:")).map(str::trim);
+        let told: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
+        let found = told.join(" ").trim_start_matches("error: ").to_owned();
         let console = Console::new(LogFormat::Json, false);
         console.error(&Fault::new(
             "usage",

@@ -42,6 +42,19 @@ impl Earlier {
         }
     }
 
+    /// The same of a run over other scenes, perhaps: of what all its scenes share.
+    pub(crate) fn differences_in_kind(&self, now: &RunRecord) -> Vec<String> {
+        let before = match (&self.run, &self.manifest) {
+            (Some(run), _) => kind(run),
+            (None, Some(manifest)) => json!({
+                "program": manifest.program, "config": manifest.config,
+                "inputs": manifest.input_hashes.shared,
+            }),
+            (None, None) => return Vec::new(),
+        };
+        differences(&before, &kind(now))
+    }
+
     /// The manifest knows no times of sweeps, the report beside it does.
     fn differences_of_finished(&self, manifest: &Manifest, now: &RunRecord) -> Vec<String> {
         let mut found = differences(&manifest_identity(manifest), &identity(now));
@@ -153,6 +166,12 @@ fn input_by_key(input: &InputRecord) -> (String, Value) {
         fields.remove("path");
     }
     (input.path.clone(), value)
+}
+
+/// What all shards of a run have alike.
+fn kind(run: &RunRecord) -> Value {
+    let shared = InputHashes::of(&run.inputs).shared;
+    json!({"program": run.program, "config": run.config, "inputs": shared})
 }
 
 /// What of a run's record stands in its manifest.

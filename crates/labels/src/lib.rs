@@ -47,6 +47,7 @@ mod npy;
 mod npz;
 mod npz_file;
 mod numbers;
+mod other_runs;
 mod pose_record;
 mod read;
 mod run;

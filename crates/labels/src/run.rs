@@ -14,6 +14,7 @@ use serde_json::Value;
 use crate::atomic::{create_dir, remove_empty_dirs, remove_file, write_file};
 use crate::differences::in_one_line;
 use crate::earlier::{Earlier, mark_report};
+use crate::other_runs::differences_from_others;
 use crate::{
     FileRecord, InputRecord, Journal, JournalEntry, Manifest, Program, RunFiles, TreePath,
     WriterLock, json,
@@ -76,12 +77,16 @@ pub struct Begun {
 /// Begins a run, or takes it up again. The record is written before anything else.
 ///
 /// # Errors
-/// [`RESUME_DIFFERS`] if another run has been here and `resume` is [`Resume::IfSame`]: the
-/// differing keys are told, and nothing is changed. If another process is at it. If the records
+/// [`RESUME_DIFFERS`] if another run has been here and `resume` is [`Resume::IfSame`], or if it was one
+/// of other shards and `resume` is not [`Resume::Always`]: the differing keys are told, and nothing is
+/// changed. If another process is at it. If the records
 /// cannot be read or written.
 pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Begun, Fault> {
     create_dir(files.tree().root())?;
     let lock = WriterLock::acquire(files.lock())?;
+    if resume != Resume::Always {
+        refuse_others(files, &differences_from_others(files, record)?)?;
+    }
     let earlier = Earlier::load(files)?;
     files.refuse_links()?;
     let differences = earlier.differences(record);
@@ -158,6 +163,18 @@ fn refuse_another(files: &RunFiles, differences: &[String]) -> Result<(), Fault>
     let expected = "the version, configuration and inputs of the run that was here";
     Err(Fault::new(RESUME_DIFFERS, place, expected, in_one_line(differences)).hint(
         "give another --output, or --resume never to start anew, --resume always to keep what is finished",
+    ))
+}
+
+/// Refuses to write beside runs whose records are not this one's to remove.
+fn refuse_others(files: &RunFiles, differences: &[String]) -> Result<(), Fault> {
+    if differences.is_empty() {
+        return Ok(());
+    }
+    let place = files.tree().root().display().to_string();
+    let expected = "a tree of this run, whole or in these shards";
+    Err(Fault::new(RESUME_DIFFERS, place, expected, in_one_line(differences)).hint(
+        "give another --output; `occlabel merge-manifests` ends a run in shards that have all ended",
     ))
 }
 

@@ -1,11 +1,15 @@
 //! Where a run keeps its records in the tree.
 
+use std::collections::BTreeSet;
+use std::io::{self, ErrorKind};
 use std::path::PathBuf;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 
 use crate::LabelTree;
 use crate::atomic::refuse_symlink;
+use crate::files::read_fault;
 
 /// A run's own files at the top of a tree. Shards that run side by side have theirs each:
 /// `manifest.0-of-4.json`, `run.0-of-4.json` and so on.
@@ -41,6 +45,11 @@ impl RunFiles {
         self.shard.map_or(1, |(_, count)| count)
     }
 
+    /// Which shard of how many it is, if it is one.
+    pub(crate) fn as_shard(&self) -> Option<(usize, usize)> {
+        self.shard
+    }
+
     /// Whether it is a part of a larger run.
     pub(crate) fn is_of_shard(&self) -> bool {
         self.shard.is_some()
@@ -72,7 +81,10 @@ impl RunFiles {
     }
 
     /// Refuses records that are symbolic links: they could lead out of the tree.
-    pub(crate) fn refuse_links(&self) -> Result<(), Fault> {
+    ///
+    /// # Errors
+    /// If one is.
+    pub fn refuse_links(&self) -> Result<(), Fault> {
         [self.manifest(), self.report(), self.run(), self.journal()]
             .iter()
             .try_for_each(|path| refuse_symlink(path))
@@ -88,6 +100,28 @@ impl RunFiles {
             Some(shard) => format!("{stem}.{shard}.{ending}"),
         }
     }
+}
+
+/// The shards of which there are such files, `<stem>.I-of-N.json`, at the top of a tree: I and N.
+pub(crate) fn shards_in(tree: &LabelTree, stem: &str) -> Result<BTreeSet<(usize, usize)>, Fault> {
+    let entries = match disk::list(tree.root()) {
+        Err(error) if is_no_folder(&error) => Vec::new(),
+        entries => entries.map_err(|error| read_fault(tree.root(), &error))?,
+    };
+    let names = entries.iter().filter_map(|entry| entry.file_name().into_string().ok());
+    Ok(names.filter_map(|name| shard_of(&name, stem)).collect())
+}
+
+/// 17 and 60 of `<stem>.17-of-60.json`.
+fn shard_of(name: &str, stem: &str) -> Option<(usize, usize)> {
+    let name = name.strip_prefix(stem)?.strip_prefix('.')?;
+    let (index, count) = name.strip_suffix(".json")?.split_once("-of-")?;
+    let (index, count) = (index.parse().ok()?, count.parse().ok()?);
+    (index < count).then_some((index, count))
+}
+
+fn is_no_folder(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
 }
 
 /// Whether a path of a tree is that of a file which a run, or a shard of one, keeps for itself.

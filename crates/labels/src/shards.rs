@@ -1,12 +1,11 @@
 //! The manifests of a run in shards, read as one.
 
-use std::io::{self, ErrorKind};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use occlabel_core::Fault;
-use occlabel_disk as disk;
 
-use crate::files::read_fault;
+use crate::run_files::shards_in;
 use crate::{LabelTree, Manifest, RunFiles};
 
 /// The shards of a run that wrote a tree; none of a run that was undivided.
@@ -42,17 +41,11 @@ impl Manifest {
     /// # Errors
     /// If they are of different runs, or say different things of one scene.
     pub fn merge(mut self, other: Self) -> Result<Self, Fault> {
-        let is_same_run = self.program == other.program
-            && self.config == other.config
-            && self.taxonomy == other.taxonomy
-            && self.input_hashes.shared == other.input_hashes.shared
-            && self.dialect == other.dialect
-            && self.grid == other.grid
-            && self.classes == other.classes
-            && self.free == other.free;
-        if !is_same_run {
-            let found = "another program, configuration, input, grid or classes";
-            return Err(Fault::new("shards", "manifest.json", "shards of one run", found));
+        let other_keys = self.other_keys(&other);
+        if !other_keys.is_empty() {
+            let found = format!("another {}", other_keys.join(", "));
+            return Err(Fault::new("shards", "manifest.json", "shards of one run", found)
+                .hint("all shards of a run are labelled from one log by one configuration"));
         }
         for (scene, record) in other.scenes {
             let told = self.scenes.entry(scene.clone()).or_insert_with(|| record.clone());
@@ -67,6 +60,21 @@ impl Manifest {
         self.input_hashes.scenes.extend(other.input_hashes.scenes);
         self.inputs_hash = self.input_hashes.whole();
         Ok(self)
+    }
+
+    /// In what another manifest is of another run.
+    fn other_keys(&self, other: &Self) -> Vec<&'static str> {
+        let same = [
+            ("program", self.program == other.program),
+            ("config", self.config == other.config),
+            ("taxonomy", self.taxonomy == other.taxonomy),
+            ("input_hashes.shared", self.input_hashes.shared == other.input_hashes.shared),
+            ("dialect", self.dialect == other.dialect),
+            ("grid", self.grid == other.grid),
+            ("classes", self.classes == other.classes),
+            ("free", self.free == other.free),
+        ];
+        same.iter().filter(|(_, is_same)| !is_same).map(|(key, _)| *key).collect()
     }
 
     /// All manifests as one; `None` of none.
@@ -94,23 +102,18 @@ pub(crate) fn load(root: &Path) -> Result<Option<Manifest>, Fault> {
     Manifest::merge_all(shards.ended.into_iter().map(|(_, manifest)| manifest))
 }
 
-/// How many shards there are, by the name of any shard's manifest.
+/// How many shards there are, by the names of their manifests.
 fn shard_count(root: &Path) -> Result<Option<usize>, Fault> {
-    let entries = match disk::list(root) {
-        Err(error) if is_no_folder(&error) => return Ok(None),
-        entries => entries.map_err(|error| read_fault(root, &error))?,
-    };
-    let names = entries.into_iter().filter_map(|entry| entry.file_name().into_string().ok());
-    let count = |name: String| {
-        let shard = name.strip_prefix("manifest.")?.strip_suffix(".json")?;
-        let (_, count) = shard.split_once("-of-")?;
-        count.parse().ok().filter(|&count| count > 0)
-    };
-    Ok(names.filter_map(count).max())
-}
-
-fn is_no_folder(error: &io::Error) -> bool {
-    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
+    let shards = shards_in(&LabelTree::new(root), "manifest")?;
+    let counts: BTreeSet<usize> = shards.into_iter().map(|(_, count)| count).collect();
+    if counts.len() > 1 {
+        let counts: Vec<String> = counts.iter().map(ToString::to_string).collect();
+        let found = format!("shards of {}", counts.join(", and of "));
+        let place = root.display().to_string();
+        return Err(Fault::new("shards", place, "the shards of one run", found)
+            .hint("move the manifests and records of all but one run away"));
+    }
+    Ok(counts.first().copied())
 }
 
 #[cfg(test)]

@@ -29,14 +29,23 @@ pub fn verify_file(tree: &LabelTree, record: &FileRecord) -> Result<(), Fault> {
     }
 }
 
-/// What a manifest says that cannot be: a hash that is not its configuration's, keyframes without files,
-/// files of keyframes that it does not list, a grid that is none.
+/// What a manifest says that cannot be: a hash that is not its configuration's or its inputs', keyframes
+/// without files, files of keyframes that it does not list, or listed twice, a grid that is none.
 pub fn verify_manifest(manifest: &Manifest) -> Vec<Fault> {
     let mut faults: Vec<Fault> = manifest.grid.spec().err().into_iter().collect();
     let hash = json_hash(&manifest.config);
     if hash != manifest.config_hash {
         faults.push(fault("config_hash", hash, manifest.config_hash.clone()));
     }
+    let inputs = manifest.input_hashes.whole();
+    if inputs != manifest.inputs_hash {
+        faults.push(fault("inputs_hash", inputs, manifest.inputs_hash.clone()));
+    }
+    let mut paths = BTreeSet::new();
+    let twice = manifest.files.iter().filter(|file| !paths.insert(&file.path));
+    faults.extend(
+        twice.map(|file| fault("files", "each file once".to_owned(), file.path.to_string())),
+    );
     let listed: BTreeSet<(&str, &str)> = keyframes(manifest).collect();
     let with_files: BTreeSet<_> = manifest.files.iter().filter_map(FileRecord::keyframe).collect();
     let lacking = listed.difference(&with_files).map(|(scene, token)| {
@@ -88,7 +97,8 @@ mod tests {
             tree.write(&path, token.as_bytes()).unwrap()
         };
         let files = vec![file("k1"), file("k2")];
-        (folder, tree, Manifest { files, ..manifest() })
+        let inputs_hash = manifest().input_hashes.whole();
+        (folder, tree, Manifest { files, inputs_hash, ..manifest() })
     }
 
     #[test]
@@ -146,6 +156,11 @@ mod tests {
         let told: Vec<_> = verify_manifest(&manifest).iter().map(ToString::to_string).collect();
         assert_eq!(told.len(), 2);
         assert!(told[0].contains("config_hash") && told[1].contains("s/k2"), "{told:?}");
+        manifest.inputs_hash = "0".repeat(64);
+        manifest.files.push(manifest.files[0].clone());
+        let told: Vec<_> = verify_manifest(&manifest).iter().map(ToString::to_string).collect();
+        assert!(told[1].contains("inputs_hash") && told[2].contains("each file once"), "{told:?}");
+        (manifest.inputs_hash, _) = (manifest.input_hashes.whole(), manifest.files.pop());
         manifest.scenes.insert("s".to_owned(), SceneRecord::default());
         let told = verify_manifest(&manifest)[1].to_string();
         assert!(told.contains("expected files of listed keyframes, found s/k1"), "{told}");

@@ -89,11 +89,15 @@ pub(crate) fn name_defect(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Whether a name can be that of an output folder: of A-Z, a-z, 0-9, `.`, `_`, `-` only, and not
-/// hidden.
+/// Longer names are too long for some file systems, together with those of files that are being written.
+const MAX_NAME_BYTES: usize = 200;
+
+/// Whether a name can be that of an output folder: of A-Z, a-z, 0-9, `.`, `_`, `-` only, not hidden, and
+/// not too long.
 pub(crate) fn is_folder_name(name: &str) -> bool {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"._-".contains(&byte);
-    !name.is_empty() && !name.starts_with('.') && name.bytes().all(plain)
+    let is_of_length = (1..=MAX_NAME_BYTES).contains(&name.len());
+    is_of_length && !name.starts_with('.') && name.bytes().all(plain)
 }
 
 #[cfg(test)]
@@ -137,6 +141,7 @@ mod tests {
     #[test]
     fn fault_36_folder_names_are_plain() {
         assert!(["scene-0061", "a.b_c", "_"].into_iter().all(is_folder_name));
+        assert!(is_folder_name(&"n".repeat(200)) && !is_folder_name(&"n".repeat(201)));
         assert!(
             !["", ".", "..", ".a", "a/b", "a b", "é", "a\n", "a\0"].into_iter().any(is_folder_name)
         );

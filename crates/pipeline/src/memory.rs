@@ -2,8 +2,11 @@
 
 use occlabel_core::GridSpec;
 
-/// Bytes that the program takes whatever it labels: itself, its threads, tables of a small log.
-const BYTES_FOR_ALL: u64 = 16 << 20;
+/// Bytes that the program takes whatever it labels: itself, and tables of a small log.
+const BYTES_FOR_ALL: u64 = 24 << 20;
+
+/// Bytes that a thread takes: its stack, and what the allocator keeps for it.
+const BYTES_A_THREAD: u64 = 1 << 20;
 
 /// Bytes that a point takes while its scene is in memory: position, label, origin, and its place in
 /// the search tree.
@@ -57,6 +60,7 @@ impl MemoryModel {
     /// Bytes with `keyframes` labelled at once, the rays of each in `shards`.
     pub fn bytes(&self, keyframes: usize, shards: usize) -> u64 {
         BYTES_FOR_ALL
+            + (keyframes * shards) as u64 * BYTES_A_THREAD
             + self.points * BYTES_A_POINT
             + keyframes as u64 * self.keyframe_bytes(shards as u64)
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use occlabel_core::Fault;
 use occlabel_labels::{
-    FileRecord, LabelTree, Manifest, unlisted_files, verify_file, verify_manifest,
+    FileRecord, LabelTree, Manifest, RunFiles, unlisted_files, verify_file, verify_manifest,
 };
 use rayon::prelude::*;
 
@@ -32,6 +32,11 @@ fn load(folder: &Path) -> Result<Manifest, Stop> {
         Fault::new("manifest", place, "the manifest of a finished run", "none")
             .hint("an interrupted run goes on when its command is given again")
     };
+    if !folder.is_dir() {
+        let place = folder.display().to_string();
+        return Err(Stop::usage(Fault::new("labels", place, "the folder of a label tree", "none")));
+    }
+    RunFiles::whole(LabelTree::new(folder)).refuse_links()?;
     let manifest = Manifest::load_tree(folder)?;
     manifest.ok_or_else(|| Stop::usage(absent()))
 }

@@ -91,8 +91,9 @@ impl Verdict {
             return vec![format!("{whole}: all as the manifest says")];
         }
         let defects = self.defects.iter().map(|defect| printable(&defect.fault.to_string()));
-        let summary =
-            format!("{whole}: {} defects; {} keyframes to redo", self.defects.len(), redo.len());
+        let [found, again] = [(self.defects.len(), "defect"), (redo.len(), "keyframe")]
+            .map(|(count, what)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }));
+        let summary = format!("{whole}: {found}; {again} to redo");
         defects.chain([summary]).collect()
     }
 }
