@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::labelled::{labelled, strings};
 use crate::support::{
     Ended, Label, SCENE, TestLog, files_under, gts_files, leftovers, manifest, nano_spec, occlabel,
-    text, tree_hash,
+    report, text, tree_hash,
 };
 
 #[test]
