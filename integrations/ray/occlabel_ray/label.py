@@ -1,6 +1,5 @@
 """Labelling one scene: what a worker runs."""
 
-import contextlib
 import ctypes
 import signal
 import subprocess
@@ -12,6 +11,9 @@ COMPLETE, USAGE, DEGRADED = 0, 2, 3
 
 PR_SET_PDEATHSIG = 1
 """See prctl(2)."""
+
+PRCTL = getattr(ctypes.CDLL(None), "prctl", None)
+"""Looked up here: between fork and exec, little may be done safely."""
 
 LAST_CHARACTERS = 2000
 """How much of what the program said is kept."""
@@ -78,5 +80,5 @@ def ending_of(code: int) -> Ending:
 
 def die_with_parent() -> None:
     """Has Linux kill this process when the one that started it is gone; elsewhere, does nothing."""
-    with contextlib.suppress(AttributeError, OSError):
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if PRCTL is not None:
+        PRCTL(PR_SET_PDEATHSIG, signal.SIGKILL)
