@@ -94,13 +94,16 @@ impl Owner {
     }
 }
 
-/// When a process began, in clock ticks since the system did: field 22 of `/proc/<pid>/stat`, see
-/// proc_pid_stat(5). Field 2 is the program's name in brackets, which may hold anything.
+/// When a process that is not dead began, in clock ticks since the system did: field 22 of
+/// `/proc/<pid>/stat`, see proc_pid_stat(5). Field 2 is the program's name in brackets, which may hold
+/// anything; field 3 tells of a dead one that nobody has waited for.
 fn began(process: u32) -> Option<u64> {
     let stat = fs::read(format!("/proc/{process}/stat")).ok()?;
     let stat = String::from_utf8_lossy(&stat);
     let (_, after_name) = stat.rsplit_once(')')?;
-    after_name.split_whitespace().nth(19)?.parse().ok()
+    let mut fields = after_name.split_whitespace();
+    let is_dead = matches!(fields.next()?, "Z" | "X");
+    fields.nth(18)?.parse().ok().filter(|_| !is_dead)
 }
 
 /// Puts us in place of a lock whose process is gone. `false` if it is another's lock by now, or none.
@@ -168,6 +171,21 @@ mod tests {
         create_dir(path.parent().unwrap()).unwrap();
         fs::write(&path, std::process::id().to_string()).unwrap();
         assert_eq!(WriterLock::of_scene(&tree, "s").unwrap_err().rule, "lock");
+    }
+
+    /// Who started it may never ask how it ended.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn fault_39_the_lock_of_a_dead_process_that_nobody_waited_for_is_taken_over() {
+        let (_folder, tree, path) = tree();
+        let mut dead = std::process::Command::new("true").spawn().unwrap();
+        while began(dead.id()).is_some() {
+            std::thread::yield_now();
+        }
+        create_dir(path.parent().unwrap()).unwrap();
+        fs::write(&path, format!("{}\n", dead.id())).unwrap();
+        assert!(WriterLock::of_scene(&tree, "s").is_ok());
+        dead.wait().unwrap();
     }
 
     #[cfg(target_os = "linux")]
