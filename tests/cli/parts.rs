@@ -160,6 +160,9 @@ fn shards_that_end_late_are_merged_in_later() {
     merge(&shared).exits(0);
     let names = |tree: &std::path::Path| files_under(tree).into_keys().collect::<Vec<_>>();
     assert_eq!(names(&whole), names(&shared));
+    fs::remove_file(shared.join("manifest.json")).expect("removed");
+    label(&shared).with(&["--shard", "0/3"]).run().exits(0);
+    merge(&shared).exits(2).tells(&["manifest.1-of-3.json", "--without-missing"]);
 }
 
 #[test]

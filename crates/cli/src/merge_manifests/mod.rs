@@ -21,7 +21,11 @@ pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<Outcome, Stop> 
     let tree = LabelTree::new(&args.labels);
     let whole = RunFiles::whole(tree.clone());
     let earlier = Manifest::load(&whole.manifest())?;
-    let mut report = MergedReport::load(&whole.report())?;
+    // Without that manifest, nothing was merged, whatever a report says.
+    let mut report = match &earlier {
+        Some(_) => MergedReport::load(&whole.report())?,
+        None => MergedReport::empty(),
+    };
     let shards = Shards::find(tree.root()).map_err(Stop::usage)?;
     let missing = shards.absent.iter().filter(|shard| !report.holds(shard));
     let missing: Vec<Fault> = missing.map(not_ended).collect();

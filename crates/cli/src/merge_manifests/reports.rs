@@ -16,11 +16,17 @@ const OF_SHARD: [&str; 6] =
 pub(super) struct MergedReport(Value);
 
 impl MergedReport {
-    /// The report of an earlier merge, or an empty one.
+    /// Of no shard.
+    pub(super) fn empty() -> Self {
+        Self(json!({
+            "version": 1, "outcome": Outcome::Complete.name(), "scenes": {}, "total": {},
+            "warnings": [], "skipped_or_degraded": [], "shards": [],
+        }))
+    }
+
+    /// The report of an earlier merge; an empty one if it is gone.
     pub(super) fn load(path: &Path) -> Result<Self, Fault> {
-        let mut report: Value = read_json(path)?.unwrap_or_else(
-            || json!({ "version": 1, "outcome": "complete", "scenes": {}, "total": {} }),
-        );
+        let Some(mut report) = read_json::<Value>(path)? else { return Ok(Self::empty()) };
         for key in ["warnings", "skipped_or_degraded", "shards"] {
             if !report[key].is_array() {
                 report[key] = json!([]);
