@@ -5,6 +5,7 @@ use std::path::Path;
 use occlabel_core::{Fault, printable};
 use occlabel_dialects::LabelSet;
 use occlabel_dialects::describe::{Description, Examined};
+use occlabel_disk as disk;
 use rayon::prelude::*;
 
 use crate::args::DescribeArgs;
@@ -14,7 +15,7 @@ use crate::threads::start_threads;
 
 pub(crate) fn run(args: &DescribeArgs, console: &Console) -> Result<Outcome, Stop> {
     start_threads(args.jobs);
-    let description = match args.input.is_dir() {
+    let description = match disk::is_dir(&args.input) {
         true => describe_folder(&args.input, args.dialect.as_deref())?,
         false => Description::of_file(&args.input, args.dialect.as_deref())?,
     };

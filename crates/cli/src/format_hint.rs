@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_logs::looks_like;
 
 use crate::args::LogArgs;
@@ -27,13 +28,13 @@ pub(crate) fn with_format(fault: Fault, log: &LogArgs) -> Fault {
 
 /// Refuses an input that is no folder.
 pub(crate) fn check_input(input: &Path) -> Result<(), Fault> {
-    if input.is_dir() {
+    if disk::is_dir(input) {
         return Ok(());
     }
     let fault =
         |found| Fault::new("input", input.display().to_string(), "a log's root folder", found);
-    if !input.is_file() {
-        return Err(fault(if input.exists() { "something else" } else { "nothing" }));
+    if !disk::is_file(input) {
+        return Err(fault(if disk::exists(input) { "something else" } else { "nothing" }));
     }
     let folder = input.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new(".")).display();

@@ -61,6 +61,7 @@ pub(crate) fn open_with(log: &LogArgs, args: &ConfigArgs, stead: &Stead) -> Resu
 /// Opens the log by a configuration, which is resolved against it.
 pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Result<Opened, Stop> {
     check_input(&log.input).map_err(Stop::usage)?;
+    disk::expect_no_change(&log.input);
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;
     let names_lidar = config.keyframes.reference_lidar != "auto";
     let stop = |fault| usage_or_failed(with_format(fault, log));

@@ -1,10 +1,13 @@
-//! Every operation on the files of logs and of label trees, one at a time, so that a test can have any
-//! of them fail.
+//! Every operation on the files of logs and of label trees, one at a time: on a disk, or in a store of
+//! objects; and so that a test can have any of them fail.
 //!
 //! A disk fails anywhere: a folder cannot be listed, a file ends in an error halfway, there is no room
 //! for the name of what was written. What the program promises then (`docs/reliability.md`) is only
-//! known once each of these was tried; so readers and writers alike go through here. Built without the
-//! feature `faults`, a [`File`] is the one of [`std::fs`], and each function its namesake there.
+//! known once each of these was tried; so readers and writers alike go through here.
+//!
+//! A path that begins as a URL does, `s3://bucket/folder`, is in a store (`docs/stores.md`): with the
+//! feature `stores`, each function does there what it does on a disk. A store has objects, and neither
+//! folders nor links: a folder is there as long as something is in it.
 //!
 //! A file may be asked for that need not be there. [`is_file`], [`is_dir`] and [`exists`] call absent
 //! what is known to be absent: what cannot be looked at counts as there, and opening it tells why. So a
@@ -19,30 +22,35 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
-#[cfg(feature = "faults")]
-mod failing_file;
+mod address;
 #[cfg(feature = "faults")]
 mod faults;
+mod file;
+mod growing_file;
+mod metadata;
+#[cfg(not(feature = "faults"))]
+mod no_faults;
 mod operations;
 mod part;
-#[cfg(not(feature = "faults"))]
-mod plain_file;
+mod place;
+mod storage;
+#[cfg(feature = "stores")]
+mod store;
 
-#[cfg(feature = "faults")]
-use failing_file::from_std;
-#[cfg(feature = "faults")]
-pub use failing_file::{File, into_std};
-#[cfg(feature = "faults")]
-use faults::before;
+pub use address::is_stored;
+pub use file::{File, into_std};
+pub use metadata::{Entry, Metadata};
 pub use operations::{
-    canonicalize, create_dir, exists, is_dir, is_file, list, metadata, open, open_by, read,
-    read_to_string, remove_dir, remove_file, symlink_metadata, sync,
+    canonicalize, create_dir, exists, expect, expect_no_change, is_dir, is_file, list, metadata,
+    open, open_to_append, open_to_lock, read, read_to_string, reading_bytes, remove_dir,
+    remove_file, symlink_metadata, sync,
 };
 pub use part::Part;
+
+#[cfg(feature = "faults")]
+use faults::{before, before_read, before_write};
 #[cfg(not(feature = "faults"))]
-pub use plain_file::{File, into_std};
-#[cfg(not(feature = "faults"))]
-use plain_file::{before, from_std};
+use no_faults::{before, before_read, before_write};
 
 /// What can fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,22 +1,41 @@
 //! Operations on paths.
 
-use std::fs::{self, DirEntry, Metadata, OpenOptions};
+use std::fs;
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use crate::Operation::{CreateFolder, List, Look, Open, Remove, RemoveFolder, Sync};
-use crate::{File, before, from_std};
+use crate::growing_file::GrowingFile;
+use crate::place::Place;
+use crate::{Entry, File, Metadata, before, is_stored};
 
 /// Opens a file to be read.
 pub fn open(path: &Path) -> io::Result<File> {
     before(Open)?;
-    fs::File::open(path).map(from_std)
+    match Place::of(path)? {
+        Place::Local(path) => fs::File::open(path).map(File::local),
+        Place::Stored(object) => object.open().map(File::stored),
+    }
 }
 
-/// Opens a file as the options say.
-pub fn open_by(options: &OpenOptions, path: &Path) -> io::Result<File> {
+/// Opens a file that is there, to append to it.
+pub fn open_to_append(path: &Path) -> io::Result<File> {
     before(Open)?;
-    options.open(path).map(from_std)
+    match Place::of(path)? {
+        Place::Local(path) => fs::OpenOptions::new().append(true).open(path).map(File::local),
+        Place::Stored(object) => GrowingFile::open(object).map(File::growing),
+    }
+}
+
+/// Opens a file that is there, to lock it.
+pub fn open_to_lock(path: &Path) -> io::Result<File> {
+    before(Open)?;
+    match Place::of(path)? {
+        Place::Local(path) => {
+            fs::OpenOptions::new().read(true).write(true).open(path).map(File::local)
+        }
+        Place::Stored(object) => object.open().map(File::stored),
+    }
 }
 
 /// All bytes of a file.
@@ -31,16 +50,22 @@ pub fn read_to_string(path: &Path) -> io::Result<String> {
     io::read_to_string(open(path)?)
 }
 
-/// What the system says of a file or folder, through symbolic links.
+/// What is known of a file or folder, through symbolic links.
 pub fn metadata(path: &Path) -> io::Result<Metadata> {
     before(Look)?;
-    fs::metadata(path)
+    match Place::of(path)? {
+        Place::Local(path) => fs::metadata(path).map(Metadata::from),
+        Place::Stored(object) => object.metadata(),
+    }
 }
 
-/// What the system says of a file, folder or symbolic link.
+/// What is known of a file, folder or symbolic link.
 pub fn symlink_metadata(path: &Path) -> io::Result<Metadata> {
     before(Look)?;
-    fs::symlink_metadata(path)
+    match Place::of(path)? {
+        Place::Local(path) => fs::symlink_metadata(path).map(Metadata::from),
+        Place::Stored(object) => object.metadata(),
+    }
 }
 
 /// Whether there is a file, or something that cannot be looked at.
@@ -72,37 +97,82 @@ fn is(path: &Path, is_such: impl Fn(&Metadata) -> bool) -> bool {
 /// The full path of what is there, without symbolic links.
 pub fn canonicalize(path: &Path) -> io::Result<PathBuf> {
     before(Look)?;
-    fs::canonicalize(path)
+    match Place::of(path)? {
+        Place::Local(path) => fs::canonicalize(path),
+        Place::Stored(_) => Ok(path.to_owned()),
+    }
 }
 
 /// What stands in a folder, in no order.
-pub fn list(folder: &Path) -> io::Result<Vec<DirEntry>> {
+pub fn list(folder: &Path) -> io::Result<Vec<Entry>> {
     before(List)?;
-    fs::read_dir(folder)?.collect()
+    match Place::of(folder)? {
+        Place::Local(here) => {
+            let entries = fs::read_dir(here)?;
+            entries.map(|entry| Entry::of_local(folder, &entry?)).collect()
+        }
+        Place::Stored(object) => {
+            let named = object.list()?.into_iter();
+            Ok(named.map(|named| Entry::of_stored(folder, named)).collect())
+        }
+    }
 }
 
-/// Creates a folder in one that is there.
+/// Creates a folder in one that is there. In a store, there is nothing to do.
 pub fn create_dir(path: &Path) -> io::Result<()> {
     before(CreateFolder)?;
-    fs::create_dir(path)
+    match Place::of(path)? {
+        Place::Local(path) => fs::create_dir(path),
+        Place::Stored(_) => Ok(()),
+    }
 }
 
 /// Removes a file.
 pub fn remove_file(path: &Path) -> io::Result<()> {
     before(Remove)?;
-    fs::remove_file(path)
+    match Place::of(path)? {
+        Place::Local(path) => fs::remove_file(path),
+        Place::Stored(object) => object.remove(),
+    }
 }
 
-/// Removes an empty folder.
+/// Removes an empty folder. In a store, it went with what was in it.
 pub fn remove_dir(path: &Path) -> io::Result<()> {
     before(RemoveFolder)?;
-    fs::remove_dir(path)
+    match Place::of(path)? {
+        Place::Local(path) => fs::remove_dir(path),
+        Place::Stored(_) => Ok(()),
+    }
 }
 
-/// Waits until a file's bytes, or a folder's names, are safe on disk.
-pub fn sync(file: &File) -> io::Result<()> {
+/// Waits until a file's bytes, or a folder's names, are safe.
+pub fn sync(file: &mut File) -> io::Result<()> {
     before(Sync)?;
-    file.sync_all()
+    file.sync()
+}
+
+/// Nothing in a folder will change as long as the program runs, as a log does not: then a store need not
+/// be asked for each of its files.
+pub fn expect_no_change(folder: &Path) {
+    if let (true, Ok(Place::Stored(object))) = (is_stored(folder), Place::of(folder)) {
+        object.expect_no_change();
+    }
+}
+
+/// These files of a folder will be read, about in this order; in place of those that were expected before.
+/// From a store, the next ones are fetched while one is worked on. Names and sizes in bytes.
+pub fn expect<'f>(folder: &Path, files: impl IntoIterator<Item = &'f (String, u64)>) {
+    if let (true, Ok(Place::Stored(object))) = (is_stored(folder), Place::of(folder)) {
+        object.expect(&mut files.into_iter().map(|(name, bytes)| (name.as_str(), *bytes)));
+    }
+}
+
+/// The memory that so many readers at once of a folder's files take at most.
+pub fn reading_bytes(folder: &Path, readers: usize) -> u64 {
+    match Place::of(folder) {
+        Ok(Place::Stored(object)) => object.reading_bytes(readers),
+        _ => 0,
+    }
 }
 
 #[cfg(test)]

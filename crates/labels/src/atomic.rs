@@ -7,8 +7,7 @@
 //! On any error the part is removed. What a killed process left behind goes when the same file is
 //! written again.
 
-use std::fs::OpenOptions;
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
@@ -49,7 +48,7 @@ pub fn write_pieces<E: From<Fault>>(
     write(&mut pieces)?;
     let flushed = pieces.flush();
     drop(pieces);
-    let bytes = part.file().metadata().map_or(0, |meta| meta.len() as usize);
+    let bytes = part.file().seek(SeekFrom::End(0)).unwrap_or(0) as usize;
     let whole = flushed.and_then(|()| disk::sync(part.file()));
     whole
         .and_then(|()| part.rename(path))
@@ -73,13 +72,13 @@ pub(crate) fn create_exclusive(path: &Path, bytes: &[u8]) -> Result<bool, Fault>
     created.map_err(|error| write_fault(path, bytes.len(), &error))
 }
 
-/// Replaces a file by its new contents. `false` if another, who has it now, removed our part as a
-/// leftover.
+/// Replaces a file, open and locked, by its new contents. `false` if another, who has it now, removed our
+/// part as a leftover, or was the first to replace what is in a store.
 ///
 /// # Errors
 /// If it cannot be written.
-pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<bool, Fault> {
-    let replaced = write_part(path, bytes).and_then(|part| match part.rename(path) {
+pub(crate) fn replace(path: &Path, open: &File, bytes: &[u8]) -> Result<bool, Fault> {
+    let replaced = write_part(path, bytes).and_then(|part| match part.rename_over(path, open) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
         renamed => renamed.and_then(|()| sync_folder_of(path)).map(|()| true),
     });
@@ -91,7 +90,7 @@ pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<bool, Fault> {
 /// # Errors
 /// If it cannot be created.
 pub fn create_dir(path: &Path) -> Result<(), Fault> {
-    if disk::is_dir(path) {
+    if disk::is_stored(path) || disk::is_dir(path) {
         return Ok(());
     }
     if path.parent().is_some_and(|above| !above.as_os_str().is_empty()) {
@@ -147,15 +146,14 @@ impl Appender {
     /// Opens a file that is there, to append to it.
     pub(crate) fn open(path: &Path) -> Result<Self, Fault> {
         refuse_symlink(path)?;
-        let opened = disk::open_by(OpenOptions::new().append(true), path)
-            .and_then(|file| Ok((file.metadata()?.len(), file)));
+        let opened = disk::open_to_append(path).and_then(|file| Ok((file.size_bytes()?, file)));
         let (bytes, file) = opened.map_err(|error| write_fault(path, 0, &error))?;
         Ok(Self { path: path.to_owned(), file, bytes })
     }
 
     /// Appends a line. If that fails, what was written of it is cut off again.
     pub(crate) fn append(&mut self, line: &[u8]) -> Result<(), Fault> {
-        match self.file.write_all(line).and_then(|()| disk::sync(&self.file)) {
+        match self.file.write_all(line).and_then(|()| disk::sync(&mut self.file)) {
             Ok(()) => {
                 self.bytes += line.len() as u64;
                 Ok(())
@@ -170,6 +168,9 @@ impl Appender {
 
 /// Refuses a path whose last part is a symbolic link.
 pub(crate) fn refuse_symlink(path: &Path) -> Result<(), Fault> {
+    if disk::is_stored(path) {
+        return Ok(());
+    }
     match disk::symlink_metadata(path) {
         Ok(meta) if meta.is_symlink() => {
             let place = path.display().to_string();
@@ -207,6 +208,9 @@ fn begin_part(path: &Path) -> io::Result<Part> {
 /// Removes what a killed process left of the same file. A file has one writer at a time: the locks
 /// see to that.
 pub(crate) fn remove_leftovers(path: &Path) -> io::Result<()> {
+    if disk::is_stored(path) {
+        return Ok(());
+    }
     let prefix = part_prefix(path);
     for entry in disk::list(folder_of(path))? {
         let name = entry.file_name();
@@ -236,7 +240,10 @@ fn folder_of(path: &Path) -> &Path {
 /// Makes the names in the folder safe, as fsync on the file makes its bytes. Some network file
 /// systems cannot; there it is as safe as they are.
 fn sync_folder_of(path: &Path) -> io::Result<()> {
-    match disk::open(folder_of(path)).and_then(|folder| disk::sync(&folder)) {
+    if disk::is_stored(path) {
+        return Ok(());
+    }
+    match disk::open(folder_of(path)).and_then(|mut folder| disk::sync(&mut folder)) {
         Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
             Ok(())
         }

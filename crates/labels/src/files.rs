@@ -58,7 +58,7 @@ impl FileRecord {
     /// Whether a file of the recorded length stands there. (It is not read.)
     pub fn stands(&self, tree: &LabelTree) -> bool {
         let meta = disk::symlink_metadata(&tree.place(&self.path));
-        meta.is_ok_and(|meta| meta.is_file() && meta.len() == self.bytes)
+        meta.is_ok_and(|meta| meta.is_file() && meta.bytes() == self.bytes)
     }
 }
 

@@ -53,7 +53,7 @@ impl InputRecord {
     pub fn of_sweep(root: &Path, path: impl Into<String>) -> Result<Self, Fault> {
         let path = path.into();
         let place = root.join(&path);
-        let meta = disk::metadata(&place).and_then(|meta| Ok((meta.len(), meta.modified()?)));
+        let meta = disk::metadata(&place).and_then(|meta| Ok((meta.bytes(), meta.modified()?)));
         let (bytes, modified) = meta.map_err(|error| read_fault(&place, &error))?;
         let since = modified.duration_since(UNIX_EPOCH).unwrap_or_default();
         Ok(Self { path, bytes, mark: InputMark::MtimeNs(since.as_nanos() as i64), scene: None })

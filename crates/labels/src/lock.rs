@@ -1,6 +1,6 @@
 //! One writer at a time: a scene's `.lock` and a run's hold the writer's process.
 
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -111,7 +111,7 @@ fn began(process: u32) -> Option<u64> {
 /// The lock's file is itself locked meanwhile, so that one at a time replaces it; who comes next finds
 /// another file in its place.
 fn take_over(path: &Path, us: &Owner) -> Result<bool, Fault> {
-    let opened = disk::open_by(OpenOptions::new().read(true).write(true), path);
+    let opened = disk::open_to_lock(path);
     let mut file = match opened {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
         opened => opened.map_err(|error| read_fault(path, &error))?,
@@ -124,7 +124,7 @@ fn take_over(path: &Path, us: &Owner) -> Result<bool, Fault> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
         Err(error) => Err(unreadable(error)),
         Ok(now) if now != text => Ok(false),
-        Ok(_) => replace(path, us.text().as_bytes()),
+        Ok(_) => replace(path, &file, us.text().as_bytes()),
     }
 }
 

@@ -100,7 +100,7 @@ pub fn read_bounded(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Fault> {
 fn open_bounded(path: &Path, max_bytes: u64) -> Result<(File, u64), Fault> {
     let unreadable = |error| read_fault(path, &error);
     let file = disk::open(path).map_err(unreadable)?;
-    let bytes = file.metadata().map_err(unreadable)?.len();
+    let bytes = file.size_bytes().map_err(unreadable)?;
     if bytes > max_bytes {
         let expected = format!("at most {max_bytes} bytes");
         let found = format!("{bytes} bytes");

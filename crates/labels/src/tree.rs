@@ -68,7 +68,7 @@ fn collect(folder: &Path, prefix: &str, found: &mut Vec<String>) -> Result<(), F
     let unreadable = |error| read_fault(folder, &error);
     for entry in disk::list(folder).map_err(unreadable)? {
         let path = format!("{prefix}{}", entry.file_name().to_string_lossy());
-        match entry.file_type().map_err(unreadable)?.is_dir() {
+        match entry.is_dir() {
             true => collect(&entry.path(), &format!("{path}/"), found)?,
             false => found.push(path),
         }

@@ -27,8 +27,7 @@ pub(crate) fn open_file(path: &Path, place: &str) -> Result<File, Fault> {
 /// If it is absent (`missing-file`), longer, or cannot be read.
 pub(crate) fn read_file(root: &Path, name: &str) -> Result<Vec<u8>, Fault> {
     let file = open_file(&root.join(name), name)?;
-    let metadata = file.metadata().map_err(|error| unreadable(name, &error))?;
-    check_size(name, metadata.len())?;
+    check_size(name, file.size_bytes().map_err(|error| unreadable(name, &error))?)?;
     let mut bytes = Vec::new();
     // It may grow meanwhile.
     let read = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
@@ -61,7 +60,7 @@ pub(crate) fn check_present(root: &Path, names: &[String]) -> Result<(), Fault> 
 
 /// A file's size in bytes; 0 if it cannot be looked at.
 pub(crate) fn file_bytes(root: &Path, name: &str) -> u64 {
-    disk::metadata(&root.join(name)).map_or(0, |metadata| metadata.len())
+    disk::metadata(&root.join(name)).map_or(0, |metadata| metadata.bytes())
 }
 
 /// What an error of the file system says about a file.

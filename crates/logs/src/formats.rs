@@ -32,7 +32,7 @@ fn has_av2_log(folder: &Path, depth: usize) -> bool {
     let Ok(entries) = disk::list(folder) else { return false };
     depth > 0
         && entries.into_iter().any(|entry| {
-            let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+            let is_folder = entry.is_dir();
             is_folder && has_av2_log(&entry.path(), depth - 1)
         })
 }

@@ -73,7 +73,7 @@ impl ImageFile {
 
 /// Width and height by the header; what was found instead, if it tells none.
 fn header_size(file: File) -> Result<[u64; 2], String> {
-    let bytes = file.metadata().map_or(0, |metadata| metadata.len());
+    let bytes = file.size_bytes().unwrap_or(0);
     let size = imagesize::reader_size(BufReader::new(file)).map_err(|error| match error {
         ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
             format!("the end of the file at byte {bytes}")

@@ -61,7 +61,7 @@ impl Inventory {
     fn look(&mut self, root: &Path, file: String, sweep: usize) -> Option<usize> {
         match disk::metadata(&root.join(&file)) {
             Ok(metadata) => {
-                self.present.push((file, metadata.len()));
+                self.present.push((file, metadata.bytes()));
                 None
             }
             Err(error) => {

@@ -46,6 +46,8 @@ pub struct MemoryModel {
     /// Bytes of the grids of bits that cameras need.
     looks: u64,
     evidence: bool,
+    /// Bytes that those take who bring the sweeps.
+    beside: u64,
 }
 
 impl MemoryModel {
@@ -54,12 +56,18 @@ impl MemoryModel {
         let [nx, ny, nz] = spec.shape().map(|n| n as u64);
         let bits = nx * ny * nz.div_ceil(64) * 8;
         let looks = bits * (BITS_A_CAMERA * cameras as u64 + BITS_FOR_ALL_CAMERAS);
-        Self { points, voxels: nx * ny * nz, looks, evidence }
+        Self { points, voxels: nx * ny * nz, looks, evidence, beside: 0 }
+    }
+
+    /// The same, where what brings the sweeps takes so many bytes.
+    pub fn beside(self, bytes: u64) -> Self {
+        Self { beside: bytes, ..self }
     }
 
     /// Bytes with `keyframes` labelled at once, the rays of each in `shards`.
     pub fn bytes(&self, keyframes: usize, shards: usize) -> u64 {
         BYTES_FOR_ALL
+            + self.beside
             + (keyframes * shards) as u64 * BYTES_A_THREAD
             + self.points * BYTES_A_POINT
             + keyframes as u64 * self.keyframe_bytes(shards as u64)

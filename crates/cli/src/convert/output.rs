@@ -1,6 +1,5 @@
 //! Whether the output folder may be written to.
 
-use std::fs::DirEntry;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
@@ -29,7 +28,7 @@ fn is_empty(root: &Path) -> Result<bool, Fault> {
     }
 }
 
-fn is_of_beginning(entry: &DirEntry) -> bool {
+fn is_of_beginning(entry: &disk::Entry) -> bool {
     let name = entry.file_name();
     let name = name.to_string_lossy();
     name.starts_with(".run.") || name.starts_with("..run.")

@@ -76,7 +76,9 @@ impl PlannedScene {
         let points = job.opened.source.scene_points(&scene);
         let spec = job.targets.largest();
         let evidence = job.args.evidence || job.targets.need_evidence();
+        let reading_bytes = disk::reading_bytes(&job.args.log.input, job.threads);
         let model = MemoryModel::new(points, spec, scene.cameras.len(), evidence);
+        let model = model.beside(reading_bytes);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
             name: name.to_owned(),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_simulate::{World, shipped_world};
 
 /// Worlds by name.
@@ -16,7 +17,7 @@ impl KnownWorlds {
     /// Reads a world file, all that a folder holds, or those of a simulated log's `truth` folder;
     /// where there is nothing of the name, the shipped world.
     pub(crate) fn read(place: &Path) -> Result<Self, Fault> {
-        let shipped = place.to_str().filter(|_| !place.exists()).and_then(shipped_world);
+        let shipped = place.to_str().filter(|_| !disk::exists(place)).and_then(shipped_world);
         let worlds = match shipped {
             Some(text) => vec![World::parse(text, &format!("{}.toml", place.display()))?],
             None => files(place)?.iter().map(|file| world(file)).collect::<Result<_, _>>()?,
@@ -48,23 +49,23 @@ impl KnownWorlds {
 
 fn world(file: &Path) -> Result<World, Fault> {
     let place = file.display().to_string();
-    let text = std::fs::read_to_string(file)
+    let text = disk::read_to_string(file)
         .map_err(|error| Fault::new("world-truth", &place, "a world file", error.to_string()))?;
     World::parse(&text, &place)
 }
 
 fn files(place: &Path) -> Result<Vec<PathBuf>, Fault> {
-    if !place.is_dir() {
+    if !disk::is_dir(place) {
         return Ok(vec![place.to_owned()]);
     }
     let truth = place.join("truth");
-    let folder = if truth.is_dir() { truth } else { place.to_owned() };
+    let folder = if disk::is_dir(&truth) { truth } else { place.to_owned() };
     let unread = |error: std::io::Error| {
         let place = folder.display().to_string();
         Fault::new("world-truth", place, "a folder of world files", error.to_string())
     };
-    let entries: Vec<_> = std::fs::read_dir(&folder).and_then(Iterator::collect).map_err(unread)?;
-    let mut files: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
+    let entries = disk::list(&folder).map_err(unread)?;
+    let mut files: Vec<PathBuf> = entries.iter().map(disk::Entry::path).collect();
     files.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
     files.sort();
     Ok(files)

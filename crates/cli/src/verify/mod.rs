@@ -6,6 +6,7 @@ mod verdict;
 use std::path::Path;
 
 use occlabel_core::Fault;
+use occlabel_disk as disk;
 use occlabel_labels::{
     FileRecord, LabelTree, Manifest, RunFiles, unlisted_files, verify_file, verify_manifest,
 };
@@ -32,7 +33,7 @@ fn load(folder: &Path) -> Result<Manifest, Stop> {
         Fault::new("manifest", place, "the manifest of a finished run", "none")
             .hint("an interrupted run goes on when its command is given again")
     };
-    if !folder.is_dir() {
+    if !disk::is_dir(folder) {
         let place = folder.display().to_string();
         return Err(Stop::usage(Fault::new("labels", place, "the folder of a label tree", "none")));
     }

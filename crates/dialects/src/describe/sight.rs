@@ -79,7 +79,8 @@ impl Sight {
 
     fn of_bytes(path: &Path) -> Result<Self, Fault> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().into_owned();
-        let bytes = disk::metadata(path).map_err(|error| unreadable(path, &error))?.len() as usize;
+        let bytes =
+            disk::metadata(path).map_err(|error| unreadable(path, &error))?.bytes() as usize;
         let number = Some(NumberType::U8.descr());
         let seen = SeenArray { name: ending, number, shape: vec![bytes] };
         Ok(Self { packing: Packing::Bytes, arrays: vec![seen] })

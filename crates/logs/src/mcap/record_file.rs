@@ -46,7 +46,7 @@ impl RecordFile {
     /// If it cannot be read, or does not begin as MCAP does.
     pub(super) fn open(root: &Path, name: &str, max_record_bytes: u64) -> Result<Self, Fault> {
         let file = open_file(&root.join(name), name)?;
-        let end = file.metadata().map_err(|error| unreadable(name, &error))?.len();
+        let end = file.size_bytes().map_err(|error| unreadable(name, &error))?;
         let file = BufReader::new(file);
         let mut file = Self { file, name: name.to_owned(), end, max_record_bytes };
         file.check_magic(0, "an MCAP file")?;

@@ -14,7 +14,7 @@ use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use super::parquet_cursor::{Cursor, Cursors, guarded};
-use crate::files::open_file;
+use crate::files::{open_file, unreadable};
 
 /// A file of the log.
 pub(super) struct Table {
@@ -38,7 +38,8 @@ impl Table {
     /// # Errors
     /// If it is absent (`missing-file`), or no Parquet file.
     pub(super) fn open(root: &Path, file: String) -> Result<Self, Fault> {
-        let opened = disk::into_std(open_file(&root.join(&file), &file)?);
+        let opened = disk::into_std(open_file(&root.join(&file), &file)?)
+            .map_err(|error| unreadable(&file, &error))?;
         let fault = |found: String| Fault::new("parquet", &file, "a Parquet file", found);
         let reader = guarded(|| SerializedFileReader::new(opened));
         let reader = reader.map_err(|error| fault(error.to_string()))?;

@@ -70,7 +70,7 @@ fn next_record(file: &mut BufReader<File>, at: u64, place: &str) -> Result<Optio
     let unreadable = |error: std::io::Error| {
         Fault::new("unreadable-file", place, "a readable file", error.to_string()).offset(at)
     };
-    let size = file.get_ref().metadata().map_err(unreadable)?.len();
+    let size = file.get_ref().size_bytes().map_err(unreadable)?;
     if at == size {
         return Ok(None);
     }
