@@ -42,6 +42,7 @@ fn work(scene: &PlannedScene) -> Value {
         "bytes": scene.bytes(),
         "cpu_seconds": scene.cpu_seconds(),
         "memory_bytes": scene.memory_bytes,
+        "work": scene.work,
     })
 }
 

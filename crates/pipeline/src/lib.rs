@@ -33,6 +33,7 @@ mod memory;
 mod own_sensors;
 mod presets;
 mod rules;
+mod scene_work;
 mod standing;
 
 pub use aggregate_scene::{aggregate_scene, boxes_at, sort_scene};
@@ -43,4 +44,5 @@ pub use occlabel_occlusion::Lenses;
 pub use own_sensors::{own_points, own_view};
 pub use presets::{PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_taxonomy};
 pub use rules::Rules;
+pub use scene_work::{CastingCost, SceneWork};
 pub use standing::standing_at;

@@ -8,12 +8,13 @@ use occlabel_dialects::KeyframeInfo;
 use occlabel_disk as disk;
 use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
-use occlabel_pipeline::MemoryModel;
+use occlabel_pipeline::{MemoryModel, SceneWork};
 use occlabel_simulate::World;
 
 use crate::label::findings::Findings;
 use crate::label::job::Job;
 use crate::label::scene_run::Finished;
+use crate::label::targets::LabelledGrid;
 use crate::lacks::lacks;
 
 /// What a ray costs, all stages included: measured with the preset `precise` on 32-beam scenes of 40
@@ -40,6 +41,8 @@ pub(crate) struct PlannedScene {
     told: Vec<Fault>,
     /// An upper estimate of its points.
     pub(crate) points: u64,
+    /// What there is to do, by the grids that are labelled.
+    pub(crate) work: Vec<SceneWork>,
 }
 
 /// Why a scene cannot be labelled.
@@ -79,6 +82,7 @@ impl PlannedScene {
         let model = MemoryModel::new(points, spec, scene.cameras.len(), evidence);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
+            work: work(job, &scene, points, &wanted),
             name: name.to_owned(),
             record: scene_record(job, &scene).map_err(|fault| Refused::Broken(vec![fault]))?,
             infos: job.targets.infos(&scene).map_err(|fault| Refused::Broken(vec![fault]))?,
@@ -210,6 +214,17 @@ fn with_hint(job: &Job, fault: Fault) -> Fault {
             fault.hint("--allow-missing-sweeps labels without those that no keyframe needs")
         }
     }
+}
+
+/// What there is to do for a scene in each grid.
+fn work(job: &Job, scene: &Scene, points: u64, wanted: &BTreeSet<String>) -> Vec<SceneWork> {
+    let of_grid = |grid: &LabelledGrid| {
+        let evidence = job.args.evidence || grid.needs_evidence();
+        let is_wanted = |keyframe: &&Keyframe| wanted.contains(&keyframe.token);
+        let keyframes = scene.keyframes.iter().filter(is_wanted);
+        SceneWork::new(scene, points, keyframes, &grid.rules, evidence)
+    };
+    job.targets.grids.iter().map(of_grid).collect()
 }
 
 /// How many keyframes fit into memory at once: into `--memory`, else into what the machine has left.

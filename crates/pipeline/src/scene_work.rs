@@ -1,0 +1,166 @@
+//! What there is to do for a scene, as far as its tables tell: what the cost model counts.
+
+use nalgebra::Point3;
+use occlabel_core::{GridSpec, Keyframe, Scene};
+use occlabel_occlusion::{CameraRays, in_view};
+use occlabel_raycast::{Crossings, RaySettings};
+use serde::{Deserialize, Serialize};
+
+use crate::Rules;
+use crate::label_keyframe::open_eyes;
+
+/// As far as most rays go, metres: a lidar this far outside a grid hardly looks into it.
+const REACH_M: f64 = 40.0;
+
+/// Of a lidar that stands in a grid half as wide as this, a ray stays for half of its length, metres.
+const HALF_OUT_M: f64 = 20.0;
+
+/// Blocks of a grid, of which it is asked whether a camera looks there.
+const LOOKS: [usize; 3] = [20, 20, 4];
+
+/// A scene in one grid. Amounts are expected ones, summed over the keyframes that are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneWork {
+    /// Points of all sweeps.
+    pub points: f64,
+    /// Those of sweeps that carry labels.
+    pub labelled_points: f64,
+    /// How many are labelled.
+    pub keyframes: f64,
+    /// Points that serve a keyframe.
+    pub rays: f64,
+    /// The same, each by how near its lidar stands to the grid: from 1 in the middle to 0.
+    pub near_rays: f64,
+    /// Voxels that near rays enter.
+    pub steps: f64,
+    /// What the rays keep of their crossings.
+    pub casting: CastingCost,
+    /// Voxels of the grids.
+    pub voxels: f64,
+    /// Voxels that cameras look at, once for each camera.
+    pub looks: f64,
+    /// Rays that cameras cast.
+    pub camera_rays: CameraRays,
+    /// Pixels that are asked for, where rays go by pixels.
+    pub pixels: f64,
+    /// Whether evidence is written.
+    pub evidence: bool,
+}
+
+/// What is kept of crossings: each costs more than the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CastingCost {
+    /// Whether there were any.
+    Marks,
+    /// How many there were.
+    Counts,
+    /// How many there were, not counting those near a ray's ends or above flat ground.
+    RuledCounts,
+}
+
+impl SceneWork {
+    /// Of so many points, the sweeps taken to be alike, and of the keyframes that are wanted.
+    pub fn new<'a>(
+        scene: &'a Scene,
+        points: u64,
+        wanted: impl IntoIterator<Item = &'a Keyframe>,
+        rules: &Rules,
+        evidence: bool,
+    ) -> Self {
+        let wanted: Vec<&Keyframe> = wanted.into_iter().collect();
+        let (points, keyframes) = (points as f64, wanted.len() as f64);
+        let a_sweep = points / scene.sweeps.len().max(1) as f64;
+        let labelled = scene.sweeps.iter().filter(|sweep| sweep.labelled).count() as f64;
+        let (rays, near_rays) = rays(scene, &wanted, rules);
+        let (camera_rays, stride) = (rules.occlusion.rays, rules.occlusion.pixel_stride as f64);
+        let looks = wanted.get(wanted.len() / 2).map_or(0.0, |middle| looks(scene, middle, rules));
+        Self {
+            points,
+            labelled_points: a_sweep * labelled,
+            keyframes,
+            rays: a_sweep * rays,
+            near_rays: a_sweep * near_rays,
+            steps: a_sweep * near_rays * steps_a_ray(&rules.spec),
+            casting: casting(rules, evidence),
+            voxels: keyframes * rules.spec.len() as f64,
+            looks: keyframes * looks,
+            camera_rays,
+            pixels: keyframes * if_pixels(camera_rays, pixels(scene) / (stride * stride)),
+            evidence,
+        }
+    }
+}
+
+/// Pairs of a keyframe and a sweep that serves it, and the same by how near they are.
+fn rays(scene: &Scene, wanted: &[&Keyframe], rules: &Rules) -> (f64, f64) {
+    let lidars: Vec<_> = scene.sweeps.iter().map(|sweep| sweep.world_from_lidar()).collect();
+    let (mut pairs, mut near) = (0.0, 0.0);
+    for keyframe in wanted {
+        let world_from_grid = rules.world_from_grid(scene.reference_sweep(keyframe));
+        let grid_from_world = world_from_grid.inverse();
+        for (sweep, lidar) in scene.sweeps.iter().zip(&lidars) {
+            if sweep.time.seconds_apart(keyframe.time) <= rules.window.window_s {
+                let at = grid_from_world * Point3::from(lidar.translation.vector);
+                pairs += 1.0;
+                near += nearness(&rules.spec, &at);
+            }
+        }
+    }
+    (pairs, near)
+}
+
+/// 1 in the middle of a grid, 0 where no ray comes from: linear in the distance along x or y.
+fn nearness(spec: &GridSpec, at: &Point3<f64>) -> f64 {
+    let (middle, half) = (nalgebra::center(&spec.min_m(), &spec.max_m()), half_m(spec));
+    let away = (at - middle).abs();
+    (1.0 - away.x.max(away.y) / (half + REACH_M)).max(0.0)
+}
+
+/// Voxels that a ray enters whose lidar stands in the middle of the grid.
+fn steps_a_ray(spec: &GridSpec) -> f64 {
+    let (half, size) = (half_m(spec), spec.size_m());
+    half * HALF_OUT_M / (half + HALF_OUT_M) * (1.0 / size.x + 1.0 / size.y) / 2.0
+}
+
+/// Half of the mean of width and length.
+fn half_m(spec: &GridSpec) -> f64 {
+    let extent = spec.max_m() - spec.min_m();
+    (extent.x + extent.y) / 4.0
+}
+
+fn casting(rules: &Rules, evidence: bool) -> CastingCost {
+    let RaySettings { ignore_near_hit_m, ignore_near_origin_m, flat_ignore_dz_m, .. } =
+        *rules.rays().settings;
+    if ignore_near_hit_m.max(ignore_near_origin_m).max(flat_ignore_dz_m) > 0.0 {
+        CastingCost::RuledCounts
+    } else if evidence || rules.states.crossings() == Crossings::HowMany {
+        CastingCost::Counts
+    } else {
+        CastingCost::Marks
+    }
+}
+
+/// Voxels that the cameras of a keyframe have in view, by the middles of some blocks.
+fn looks(scene: &Scene, keyframe: &Keyframe, rules: &Rules) -> f64 {
+    let (spec, [nx, ny, nz]) = (&rules.spec, LOOKS.map(|n| n as f64));
+    let extent = spec.max_m() - spec.min_m();
+    let size = [extent.x / nx, extent.y / ny, extent.z / nz];
+    let Ok(blocks) = GridSpec::new(spec.min_m().into(), spec.max_m().into(), size) else {
+        return 0.0;
+    };
+    let grid_from_world = rules.world_from_grid(scene.reference_sweep(keyframe)).inverse();
+    let eyes = open_eyes(scene, keyframe, &grid_from_world);
+    let seen = |eye| in_view(std::slice::from_ref(eye), &blocks, rules.occlusion.depth_max_m);
+    let count = |eye| seen(eye).values().iter().map(|&seen| f64::from(seen)).sum::<f64>();
+    eyes.iter().map(count).sum::<f64>() * spec.len() as f64 / blocks.len() as f64
+}
+
+fn pixels(scene: &Scene) -> f64 {
+    let cameras = scene.cameras.iter().map(|named| &named.camera);
+    cameras.map(|camera| f64::from(camera.width) * f64::from(camera.height)).sum()
+}
+
+fn if_pixels(rays: CameraRays, pixels: f64) -> f64 {
+    if rays == CameraRays::Pixels { pixels } else { 0.0 }
+}
