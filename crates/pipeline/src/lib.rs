@@ -24,6 +24,7 @@
 mod aggregate_scene;
 mod check;
 mod config;
+mod cost;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
 mod flow;
@@ -38,6 +39,7 @@ mod standing;
 
 pub use aggregate_scene::{aggregate_scene, boxes_at, sort_scene};
 pub use config::{Autos, Config, EgoBox, GridFrame, GridTable, Limit, ReaderTables, VoxelSize};
+pub use cost::Cost;
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
 pub use occlabel_occlusion::Lenses;

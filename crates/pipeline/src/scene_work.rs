@@ -1,9 +1,12 @@
 //! What there is to do for a scene, as far as its tables tell: what the cost model counts.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Point3;
-use occlabel_core::{GridSpec, Keyframe, Scene};
-use occlabel_occlusion::{CameraRays, in_view};
-use occlabel_raycast::{Crossings, RaySettings};
+use occlabel_core::camera::CameraModel;
+use occlabel_core::{Box3, BoxTrack, GridSpec, Keyframe, Scene, Timestamp};
+use occlabel_occlusion::{CameraRays, Eye, in_view};
+use occlabel_raycast::{Crossings, ObjectRays, RaySettings};
 use serde::{Deserialize, Serialize};
 
 use crate::Rules;
@@ -15,12 +18,20 @@ const REACH_M: f64 = 40.0;
 /// Of a lidar that stands in a grid half as wide as this, a ray stays for half of its length, metres.
 const HALF_OUT_M: f64 = 20.0;
 
+/// What a lidar looks at, steradian: all around, 34 degrees from its lowest to its highest beam.
+const LIDAR_SR: f64 = TAU * 0.6;
+
+/// No thing is taken to be nearer to a lidar than this, metres.
+const NEAREST_M: f64 = 3.0;
+
 /// Blocks of a grid, of which it is asked whether a camera looks there.
 const LOOKS: [usize; 3] = [20, 20, 4];
 
 /// A scene in one grid. Amounts are expected ones, summed over the keyframes that are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneWork {
+    /// Sweeps.
+    pub sweeps: f64,
     /// Points of all sweeps.
     pub points: f64,
     /// Those of sweeps that carry labels.
@@ -33,12 +44,18 @@ pub struct SceneWork {
     pub near_rays: f64,
     /// Voxels that near rays enter.
     pub steps: f64,
+    /// Of the rays, those to points of tracks that stand in the grid then.
+    pub object_rays: f64,
+    /// How they are cast.
+    pub objects: ObjectRays,
     /// What the rays keep of their crossings.
     pub casting: CastingCost,
     /// Voxels of the grids.
     pub voxels: f64,
-    /// Voxels that cameras look at, once for each camera.
+    /// Voxels that cameras without distortion look at, once for each camera.
     pub looks: f64,
+    /// The same of cameras with distortion or wide lenses.
+    pub curved_looks: f64,
     /// Rays that cameras cast.
     pub camera_rays: CameraRays,
     /// Pixels that are asked for, where rays go by pixels.
@@ -74,17 +91,22 @@ impl SceneWork {
         let labelled = scene.sweeps.iter().filter(|sweep| sweep.labelled).count() as f64;
         let (rays, near_rays) = rays(scene, &wanted, rules);
         let (camera_rays, stride) = (rules.occlusion.rays, rules.occlusion.pixel_stride as f64);
-        let looks = wanted.get(wanted.len() / 2).map_or(0.0, |middle| looks(scene, middle, rules));
+        let middle = wanted.get(wanted.len() / 2);
+        let [looks, curved_looks] = middle.map_or([0.0; 2], |at| looks(scene, at, rules));
         Self {
+            sweeps: scene.sweeps.len() as f64,
             points,
             labelled_points: a_sweep * labelled,
             keyframes,
             rays: a_sweep * rays,
             near_rays: a_sweep * near_rays,
             steps: a_sweep * near_rays * steps_a_ray(&rules.spec),
+            object_rays: a_sweep * object_rays(scene, &wanted, rules),
+            objects: rules.rays().settings.object_rays,
             casting: casting(rules, evidence),
             voxels: keyframes * rules.spec.len() as f64,
             looks: keyframes * looks,
+            curved_looks: keyframes * curved_looks,
             camera_rays,
             pixels: keyframes * if_pixels(camera_rays, pixels(scene) / (stride * stride)),
             evidence,
@@ -112,9 +134,49 @@ fn rays(scene: &Scene, wanted: &[&Keyframe], rules: &Rules) -> (f64, f64) {
 
 /// 1 in the middle of a grid, 0 where no ray comes from: linear in the distance along x or y.
 fn nearness(spec: &GridSpec, at: &Point3<f64>) -> f64 {
-    let (middle, half) = (nalgebra::center(&spec.min_m(), &spec.max_m()), half_m(spec));
-    let away = (at - middle).abs();
-    (1.0 - away.x.max(away.y) / (half + REACH_M)).max(0.0)
+    (1.0 - off_middle_m(spec, at) / (half_m(spec) + REACH_M)).max(0.0)
+}
+
+/// How far from the middle of a grid, along x or y.
+fn off_middle_m(spec: &GridSpec, at: &Point3<f64>) -> f64 {
+    let away = (at - nalgebra::center(&spec.min_m(), &spec.max_m())).abs();
+    away.x.max(away.y)
+}
+
+/// Rays to points of tracks that stand in the grid, in points of a mean sweep.
+fn object_rays(scene: &Scene, wanted: &[&Keyframe], rules: &Rules) -> f64 {
+    let of_track = |track: &BoxTrack| {
+        let (Some((begin, _)), Some((end, _))) = (track.boxes.first(), track.boxes.last()) else {
+            return 0.0;
+        };
+        let lives = |time: Timestamp| (*begin..=*end).contains(&time);
+        let sweeps = scene.sweeps.iter().filter(|sweep| lives(sweep.time)).count() as f64;
+        let shares = track.boxes.iter().map(|(time, boxed)| share(scene, *time, boxed));
+        let mean_share = shares.sum::<f64>() / track.boxes.len() as f64;
+        let standing = wanted.iter().filter(|keyframe| lives(keyframe.time));
+        let in_grid = standing.filter(|keyframe| is_in_grid(scene, keyframe, track, rules));
+        mean_share * sweeps * in_grid.count() as f64
+    };
+    scene.tracks.iter().map(of_track).sum()
+}
+
+/// The share of a lidar's view that a box takes.
+fn share(scene: &Scene, time: Timestamp, boxed: &Box3) -> f64 {
+    let after = scene.sweeps.partition_point(|sweep| sweep.time < time);
+    let Some(sweep) = scene.sweeps.get(after).or(scene.sweeps.last()) else { return 0.0 };
+    let lidar = sweep.world_from_lidar().translation.vector;
+    let away_m = (boxed.world_from_box.translation.vector - lidar).norm().max(NEAREST_M);
+    let (width, height) = ((boxed.size_m.x + boxed.size_m.y) / 2.0, boxed.size_m.z);
+    width * height / (away_m * away_m) / LIDAR_SR
+}
+
+/// Whether a track is in the grid of a keyframe, by the nearest of its boxes in time.
+fn is_in_grid(scene: &Scene, keyframe: &Keyframe, track: &BoxTrack, rules: &Rules) -> bool {
+    let after = track.boxes.partition_point(|(time, _)| *time < keyframe.time);
+    let Some((_, boxed)) = track.boxes.get(after).or(track.boxes.last()) else { return false };
+    let grid_from_world = rules.world_from_grid(scene.reference_sweep(keyframe)).inverse();
+    let at = grid_from_world * Point3::from(boxed.world_from_box.translation.vector);
+    off_middle_m(&rules.spec, &at) <= half_m(&rules.spec)
 }
 
 /// Voxels that a ray enters whose lidar stands in the middle of the grid.
@@ -141,19 +203,27 @@ fn casting(rules: &Rules, evidence: bool) -> CastingCost {
     }
 }
 
-/// Voxels that the cameras of a keyframe have in view, by the middles of some blocks.
-fn looks(scene: &Scene, keyframe: &Keyframe, rules: &Rules) -> f64 {
+/// Voxels that the cameras of a keyframe have in view, by the middles of some blocks: of cameras without
+/// distortion, and of the others.
+fn looks(scene: &Scene, keyframe: &Keyframe, rules: &Rules) -> [f64; 2] {
     let (spec, [nx, ny, nz]) = (&rules.spec, LOOKS.map(|n| n as f64));
     let extent = spec.max_m() - spec.min_m();
     let size = [extent.x / nx, extent.y / ny, extent.z / nz];
     let Ok(blocks) = GridSpec::new(spec.min_m().into(), spec.max_m().into(), size) else {
-        return 0.0;
+        return [0.0; 2];
     };
     let grid_from_world = rules.world_from_grid(scene.reference_sweep(keyframe)).inverse();
-    let eyes = open_eyes(scene, keyframe, &grid_from_world);
-    let seen = |eye| in_view(std::slice::from_ref(eye), &blocks, rules.occlusion.depth_max_m);
-    let count = |eye| seen(eye).values().iter().map(|&seen| f64::from(seen)).sum::<f64>();
-    eyes.iter().map(count).sum::<f64>() * spec.len() as f64 / blocks.len() as f64
+    let mut looks = [0.0; 2];
+    for eye in open_eyes(scene, keyframe, &grid_from_world) {
+        let seen = in_view(std::slice::from_ref(&eye), &blocks, rules.occlusion.depth_max_m);
+        let count: f64 = seen.values().iter().map(|&seen| f64::from(seen)).sum();
+        looks[usize::from(is_curved(&eye))] += count * spec.len() as f64 / blocks.len() as f64;
+    }
+    looks
+}
+
+fn is_curved(eye: &Eye) -> bool {
+    !matches!(eye.camera.model, CameraModel::Pinhole(_))
 }
 
 fn pixels(scene: &Scene) -> f64 {

@@ -8,7 +8,7 @@ use occlabel_dialects::KeyframeInfo;
 use occlabel_disk as disk;
 use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
-use occlabel_pipeline::{MemoryModel, SceneWork};
+use occlabel_pipeline::{Cost, MemoryModel, SceneWork};
 use occlabel_simulate::World;
 
 use crate::label::findings::Findings;
@@ -16,10 +16,6 @@ use crate::label::job::Job;
 use crate::label::scene_run::Finished;
 use crate::label::targets::LabelledGrid;
 use crate::lacks::lacks;
-
-/// What a ray costs, all stages included: measured with the preset `precise` on 32-beam scenes of 40
-/// keyframes.
-const CPU_SECONDS_A_RAY: f64 = 1.7e-7;
 
 /// A scene that will be labelled.
 pub(crate) struct PlannedScene {
@@ -126,18 +122,20 @@ impl PlannedScene {
     }
 
     /// What labelling it is expected to cost.
-    pub(crate) fn cpu_seconds(&self) -> f64 {
-        self.rays() as f64 * CPU_SECONDS_A_RAY
+    pub(crate) fn cost(&self) -> Cost {
+        Cost::new(&self.work, self.memory_bytes)
     }
 
     /// One line for `--dry-run`.
     pub(crate) fn line(&self) -> String {
         let (keyframes, points, sweeps) = (self.wanted.len(), self.points, self.sweeps);
         let (name, bytes, rays) = (&self.name, self.bytes(), self.rays());
-        let (memory_bytes, seconds) = (self.memory_bytes, self.cpu_seconds());
+        let (memory_bytes, cost) = (self.memory_bytes, self.cost());
+        let (seconds, output_bytes) = (cost.cpu_seconds, cost.output_bytes);
         format!(
             "{name}: {keyframes} keyframes, {sweeps} sweeps, {bytes} bytes; at most {points} points, \
-             {rays} rays, {memory_bytes} bytes of memory; expected time {seconds:.1} CPU-seconds"
+             {rays} rays, {memory_bytes} bytes of memory; expected time {seconds:.1} CPU-seconds, \
+             {output_bytes:.0} bytes of labels"
         )
     }
 }
