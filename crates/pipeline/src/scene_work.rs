@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Point3;
+use occlabel_annotate::{BoxSource, box_at};
 use occlabel_core::camera::CameraModel;
-use occlabel_core::{Box3, BoxTrack, GridSpec, Keyframe, Scene, Timestamp};
+use occlabel_core::{Box3, BoxTrack, GridSpec, Keyframe, Scene, SweepHeader, Timestamp};
 use occlabel_occlusion::{CameraRays, Eye, in_view};
 use occlabel_raycast::{Crossings, ObjectRays, RaySettings};
 use serde::{Deserialize, Serialize};
@@ -24,6 +25,9 @@ const LIDAR_SR: f64 = TAU * 0.6;
 /// No thing is taken to be nearer to a lidar than this, metres.
 const NEAREST_M: f64 = 3.0;
 
+/// How much of its box a thing that changes shape fills, as a lidar sees it.
+const BODY_FILL: f64 = 0.5;
+
 /// Blocks of a grid, of which it is asked whether a camera looks there.
 const LOOKS: [usize; 3] = [20, 20, 4];
 
@@ -42,6 +46,8 @@ pub struct SceneWork {
     pub rays: f64,
     /// The same, each by how near its lidar stands to the grid: from 1 in the middle to 0.
     pub near_rays: f64,
+    /// How far from the middle of the grid the lidars of near rays stand, metres.
+    pub spread_m: f64,
     /// Voxels that near rays enter.
     pub steps: f64,
     /// Of the rays, those to points of tracks that stand in the grid then.
@@ -50,6 +56,10 @@ pub struct SceneWork {
     pub objects: ObjectRays,
     /// What the rays keep of their crossings.
     pub casting: CastingCost,
+    /// The size of a voxel, metres: the geometric mean of its edges.
+    pub voxel_size_m: f64,
+    /// Width times length of the grid, square metres.
+    pub area_m2: f64,
     /// Voxels of the grids.
     pub voxels: f64,
     /// Voxels that cameras without distortion look at, once for each camera.
@@ -89,7 +99,8 @@ impl SceneWork {
         let (points, keyframes) = (points as f64, wanted.len() as f64);
         let a_sweep = points / scene.sweeps.len().max(1) as f64;
         let labelled = scene.sweeps.iter().filter(|sweep| sweep.labelled).count() as f64;
-        let (rays, near_rays) = rays(scene, &wanted, rules);
+        let [rays, near_rays, spread_m] = rays(scene, &wanted, rules);
+        let (size, extent) = (rules.spec.size_m(), rules.spec.max_m() - rules.spec.min_m());
         let (camera_rays, stride) = (rules.occlusion.rays, rules.occlusion.pixel_stride as f64);
         let middle = wanted.get(wanted.len() / 2);
         let [looks, curved_looks] = middle.map_or([0.0; 2], |at| looks(scene, at, rules));
@@ -100,10 +111,13 @@ impl SceneWork {
             keyframes,
             rays: a_sweep * rays,
             near_rays: a_sweep * near_rays,
+            spread_m,
             steps: a_sweep * near_rays * steps_a_ray(&rules.spec),
             object_rays: a_sweep * object_rays(scene, &wanted, rules),
             objects: rules.rays().settings.object_rays,
             casting: casting(rules, evidence),
+            voxel_size_m: size.product().cbrt(),
+            area_m2: extent.x * extent.y,
             voxels: keyframes * rules.spec.len() as f64,
             looks: keyframes * looks,
             curved_looks: keyframes * curved_looks,
@@ -114,22 +128,25 @@ impl SceneWork {
     }
 }
 
-/// Pairs of a keyframe and a sweep that serves it, and the same by how near they are.
-fn rays(scene: &Scene, wanted: &[&Keyframe], rules: &Rules) -> (f64, f64) {
+/// Pairs of a keyframe and a sweep that serves it, the same by how near they are, and how far from the
+/// middle of the grid the near ones are.
+fn rays(scene: &Scene, wanted: &[&Keyframe], rules: &Rules) -> [f64; 3] {
     let lidars: Vec<_> = scene.sweeps.iter().map(|sweep| sweep.world_from_lidar()).collect();
-    let (mut pairs, mut near) = (0.0, 0.0);
+    let (mut pairs, mut near, mut away_m) = (0.0, 0.0, 0.0);
     for keyframe in wanted {
         let world_from_grid = rules.world_from_grid(scene.reference_sweep(keyframe));
         let grid_from_world = world_from_grid.inverse();
         for (sweep, lidar) in scene.sweeps.iter().zip(&lidars) {
             if sweep.time.seconds_apart(keyframe.time) <= rules.window.window_s {
                 let at = grid_from_world * Point3::from(lidar.translation.vector);
+                let nearness = nearness(&rules.spec, &at);
                 pairs += 1.0;
-                near += nearness(&rules.spec, &at);
+                near += nearness;
+                away_m += nearness * off_middle_m(&rules.spec, &at);
             }
         }
     }
-    (pairs, near)
+    [pairs, near, if near > 0.0 { away_m / near } else { 0.0 }]
 }
 
 /// 1 in the middle of a grid, 0 where no ray comes from: linear in the distance along x or y.
@@ -145,35 +162,42 @@ fn off_middle_m(spec: &GridSpec, at: &Point3<f64>) -> f64 {
 
 /// Rays to points of tracks that stand in the grid, in points of a mean sweep.
 fn object_rays(scene: &Scene, wanted: &[&Keyframe], rules: &Rules) -> f64 {
-    let of_track = |track: &BoxTrack| {
-        let (Some((begin, _)), Some((end, _))) = (track.boxes.first(), track.boxes.last()) else {
-            return 0.0;
-        };
-        let lives = |time: Timestamp| (*begin..=*end).contains(&time);
-        let sweeps = scene.sweeps.iter().filter(|sweep| lives(sweep.time)).count() as f64;
-        let shares = track.boxes.iter().map(|(time, boxed)| share(scene, *time, boxed));
-        let mean_share = shares.sum::<f64>() / track.boxes.len() as f64;
-        let standing = wanted.iter().filter(|keyframe| lives(keyframe.time));
-        let in_grid = standing.filter(|keyframe| is_in_grid(scene, keyframe, track, rules));
-        mean_share * sweeps * in_grid.count() as f64
+    scene.tracks.iter().map(|track| rays_of_track(scene, wanted, track, rules)).sum()
+}
+
+fn rays_of_track(scene: &Scene, wanted: &[&Keyframe], track: &BoxTrack, rules: &Rules) -> f64 {
+    let Some(class) = track.class() else { return 0.0 };
+    let deforms = rules.window.deformable.contains(class);
+    let (window_s, fill) = match deforms {
+        true => (rules.window.deformable_window_s.min(rules.window.window_s), BODY_FILL),
+        false => (rules.window.window_s, 1.0),
     };
-    scene.tracks.iter().map(of_track).sum()
+    let seen = |sweep: &SweepHeader| {
+        Some((sweep.time, share(sweep, &box_at(track, sweep.time, &rules.boxes)?.0)))
+    };
+    let seen: Vec<(Timestamp, f64)> = scene.sweeps.iter().filter_map(seen).collect();
+    let standing = wanted.iter().filter(|keyframe| is_in_grid(scene, keyframe, track, rules));
+    let of_keyframe = |keyframe: &&Keyframe| -> f64 {
+        let serves = |time: Timestamp| time.seconds_apart(keyframe.time) <= window_s;
+        seen.iter().filter(|(time, _)| serves(*time)).map(|(_, share)| share).sum()
+    };
+    standing.map(of_keyframe).sum::<f64>() * fill
 }
 
 /// The share of a lidar's view that a box takes.
-fn share(scene: &Scene, time: Timestamp, boxed: &Box3) -> f64 {
-    let after = scene.sweeps.partition_point(|sweep| sweep.time < time);
-    let Some(sweep) = scene.sweeps.get(after).or(scene.sweeps.last()) else { return 0.0 };
+fn share(sweep: &SweepHeader, boxed: &Box3) -> f64 {
     let lidar = sweep.world_from_lidar().translation.vector;
     let away_m = (boxed.world_from_box.translation.vector - lidar).norm().max(NEAREST_M);
     let (width, height) = ((boxed.size_m.x + boxed.size_m.y) / 2.0, boxed.size_m.z);
     width * height / (away_m * away_m) / LIDAR_SR
 }
 
-/// Whether a track is in the grid of a keyframe, by the nearest of its boxes in time.
+/// Whether a track stands in the grid of a keyframe.
 fn is_in_grid(scene: &Scene, keyframe: &Keyframe, track: &BoxTrack, rules: &Rules) -> bool {
-    let after = track.boxes.partition_point(|(time, _)| *time < keyframe.time);
-    let Some((_, boxed)) = track.boxes.get(after).or(track.boxes.last()) else { return false };
+    let at = box_at(track, keyframe.time, &rules.boxes);
+    let Some((boxed, _)) = at.filter(|(_, source)| *source != BoxSource::Extrapolated) else {
+        return false;
+    };
     let grid_from_world = rules.world_from_grid(scene.reference_sweep(keyframe)).inverse();
     let at = grid_from_world * Point3::from(boxed.world_from_box.translation.vector);
     off_middle_m(&rules.spec, &at) <= half_m(&rules.spec)
