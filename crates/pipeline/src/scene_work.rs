@@ -88,20 +88,18 @@ pub enum CastingCost {
 
 impl SceneWork {
     /// Of so many points, the sweeps taken to be alike, and of the keyframes that are wanted.
-    pub fn new<'a>(
-        scene: &'a Scene,
+    pub fn new(
+        scene: &Scene,
         points: u64,
-        wanted: impl IntoIterator<Item = &'a Keyframe>,
+        wanted: &[&Keyframe],
         rules: &Rules,
         evidence: bool,
     ) -> Self {
-        let wanted: Vec<&Keyframe> = wanted.into_iter().collect();
         let (points, keyframes) = (points as f64, wanted.len() as f64);
         let a_sweep = points / scene.sweeps.len().max(1) as f64;
         let labelled = scene.sweeps.iter().filter(|sweep| sweep.labelled).count() as f64;
-        let [rays, near_rays, spread_m] = rays(scene, &wanted, rules);
+        let [rays, near_rays, spread_m] = rays(scene, wanted, rules);
         let (size, extent) = (rules.spec.size_m(), rules.spec.max_m() - rules.spec.min_m());
-        let (camera_rays, stride) = (rules.occlusion.rays, rules.occlusion.pixel_stride as f64);
         let middle = wanted.get(wanted.len() / 2);
         let [looks, curved_looks] = middle.map_or([0.0; 2], |at| looks(scene, at, rules));
         Self {
@@ -113,7 +111,7 @@ impl SceneWork {
             near_rays: a_sweep * near_rays,
             spread_m,
             steps: a_sweep * near_rays * steps_a_ray(&rules.spec),
-            object_rays: a_sweep * object_rays(scene, &wanted, rules),
+            object_rays: a_sweep * object_rays(scene, wanted, rules),
             objects: rules.rays().settings.object_rays,
             casting: casting(rules, evidence),
             voxel_size_m: size.product().cbrt(),
@@ -121,8 +119,8 @@ impl SceneWork {
             voxels: keyframes * rules.spec.len() as f64,
             looks: keyframes * looks,
             curved_looks: keyframes * curved_looks,
-            camera_rays,
-            pixels: keyframes * if_pixels(camera_rays, pixels(scene) / (stride * stride)),
+            camera_rays: rules.occlusion.rays,
+            pixels: keyframes * pixels(scene, rules),
             evidence,
         }
     }
@@ -250,11 +248,12 @@ fn is_curved(eye: &Eye) -> bool {
     !matches!(eye.camera.model, CameraModel::Pinhole(_))
 }
 
-fn pixels(scene: &Scene) -> f64 {
+/// Pixels of all cameras that rays are cast through.
+fn pixels(scene: &Scene, rules: &Rules) -> f64 {
+    if rules.occlusion.rays != CameraRays::Pixels {
+        return 0.0;
+    }
     let cameras = scene.cameras.iter().map(|named| &named.camera);
-    cameras.map(|camera| f64::from(camera.width) * f64::from(camera.height)).sum()
-}
-
-fn if_pixels(rays: CameraRays, pixels: f64) -> f64 {
-    if rays == CameraRays::Pixels { pixels } else { 0.0 }
+    let all = cameras.map(|camera| f64::from(camera.width) * f64::from(camera.height));
+    all.sum::<f64>() / (rules.occlusion.pixel_stride as f64).powi(2)
 }

@@ -216,11 +216,11 @@ fn with_hint(job: &Job, fault: Fault) -> Fault {
 
 /// What there is to do for a scene in each grid.
 fn work(job: &Job, scene: &Scene, points: u64, wanted: &BTreeSet<String>) -> Vec<SceneWork> {
+    let is_wanted = |keyframe: &&Keyframe| wanted.contains(&keyframe.token);
+    let keyframes: Vec<_> = scene.keyframes.iter().filter(is_wanted).collect();
     let of_grid = |grid: &LabelledGrid| {
         let evidence = job.args.evidence || grid.needs_evidence();
-        let is_wanted = |keyframe: &&Keyframe| wanted.contains(&keyframe.token);
-        let keyframes = scene.keyframes.iter().filter(is_wanted);
-        SceneWork::new(scene, points, keyframes, &grid.rules, evidence)
+        SceneWork::new(scene, points, &keyframes, &grid.rules, evidence)
     };
     job.targets.grids.iter().map(of_grid).collect()
 }
