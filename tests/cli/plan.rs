@@ -23,9 +23,11 @@ fn a_scene_is_a_line_with_what_it_costs() {
     for line in &lines {
         let number = |key: &str| line[key].as_f64().unwrap_or_else(|| panic!("{key} of {line}"));
         assert_eq!(number("rays"), number("points") * number("keyframes"));
-        for key in ["sweeps", "bytes", "cpu_seconds", "memory_bytes"] {
+        for key in ["sweeps", "bytes", "cpu_seconds", "memory_bytes", "output_bytes"] {
             assert!(number(key) > 0.0, "{key} of {line}");
         }
+        let expected = number("expected_memory_bytes");
+        assert!(expected > 0.0 && expected < number("memory_bytes"), "{line}");
     }
 }
 
@@ -51,6 +53,27 @@ fn evidence_and_finer_grids_cost_more_memory() {
     let plain = bytes(&[]);
     assert!(bytes(&["--evidence"]) > plain);
     assert!(bytes(&["--set", "grid.voxel_size_m=0.2"]) > plain);
+}
+
+#[test]
+fn what_is_expected_follows_the_configuration() {
+    let log = TestLog::nano();
+    let line = |more: &[&str]| lines(&plan(&log, more).exits(0).stdout).remove(0);
+    let number = |line: &Value, key: &str| line[key].as_f64().unwrap();
+    let plain = line(&[]);
+    let costlier: [&[&str]; 3] = [
+        &["--evidence"],
+        &["--set", "grid.voxel_size_m=0.2"],
+        &["--set", "states.free_min_crossings=11", "--set", "occlusion.rays=pixels"],
+    ];
+    for more in costlier {
+        let other = line(more);
+        assert!(number(&other, "cpu_seconds") > number(&plain, "cpu_seconds"), "{more:?}");
+    }
+    let bytes = |more: &[&str]| number(&line(more), "output_bytes");
+    assert!(bytes(&["--evidence"]) > 2.0 * bytes(&[]));
+    assert_eq!(plain["work"].as_array().map(Vec::len), Some(1), "one grid");
+    assert_eq!(line(&["--also", "occ3d-nuscenes"])["work"].as_array().map(Vec::len), Some(2));
 }
 
 #[test]

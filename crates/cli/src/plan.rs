@@ -34,14 +34,18 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<Outcome, Stop> {
 
 /// What a scene will cost.
 fn work(scene: &PlannedScene) -> Value {
+    let cost = scene.cost();
     json!({
         "keyframes": scene.wanted.len(),
         "sweeps": scene.sweeps,
         "points": scene.points,
         "rays": scene.rays(),
         "bytes": scene.bytes(),
-        "cpu_seconds": scene.cpu_seconds(),
+        "cpu_seconds": cost.cpu_seconds,
         "memory_bytes": scene.memory_bytes,
+        "expected_memory_bytes": cost.memory_bytes.round() as u64,
+        "output_bytes": cost.output_bytes.round() as u64,
+        "work": scene.work,
     })
 }
 
@@ -53,7 +57,9 @@ fn trouble(console: &Console, name: &str, refused: Refused, findings: &mut Findi
     };
     faults.iter().for_each(|fault| findings.lose(console, name, fault));
     let mut line = json!({ "errors": faults.iter().map(fault_json).collect::<Vec<_>>() });
-    for key in ["keyframes", "sweeps", "points", "rays", "bytes", "memory_bytes"] {
+    let of_no_work =
+        ["keyframes", "sweeps", "points", "rays", "bytes", "memory_bytes", "output_bytes"];
+    for key in of_no_work.into_iter().chain(["expected_memory_bytes"]) {
         line[key] = json!(0);
     }
     line["cpu_seconds"] = json!(0.0);

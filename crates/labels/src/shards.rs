@@ -1,6 +1,7 @@
 //! The manifests of a run in shards, read as one.
 
 use std::collections::BTreeSet;
+use std::collections::btree_map::Entry;
 use std::path::Path;
 
 use occlabel_core::Fault;
@@ -41,6 +42,12 @@ impl Manifest {
     /// # Errors
     /// If they are of different runs, or say different things of one scene.
     pub fn merge(mut self, other: Self) -> Result<Self, Fault> {
+        self.take_in(other)?;
+        Ok(self.in_order())
+    }
+
+    /// Adds what another shard says; the files are out of order then, and the hashes not those of all.
+    fn take_in(&mut self, other: Self) -> Result<(), Fault> {
         let other_keys = self.other_keys(&other);
         if !other_keys.is_empty() {
             let found = format!("another {}", other_keys.join(", "));
@@ -48,18 +55,26 @@ impl Manifest {
                 .hint("all shards of a run are labelled from one log by one configuration"));
         }
         for (scene, record) in other.scenes {
-            let told = self.scenes.entry(scene.clone()).or_insert_with(|| record.clone());
-            if *told != record {
-                let fault = Fault::new("shards", "manifest.json", "each scene in one shard", scene);
-                return Err(fault.record("scenes"));
+            match self.scenes.entry(scene) {
+                Entry::Vacant(place) => drop(place.insert(record)),
+                Entry::Occupied(told) if *told.get() == record => {}
+                Entry::Occupied(told) => {
+                    let expected = "each scene in one shard";
+                    let fault = Fault::new("shards", "manifest.json", expected, told.key());
+                    return Err(fault.record("scenes"));
+                }
             }
         }
         self.files.extend(other.files);
+        self.input_hashes.scenes.extend(other.input_hashes.scenes);
+        Ok(())
+    }
+
+    fn in_order(mut self) -> Self {
         self.files.sort();
         self.files.dedup();
-        self.input_hashes.scenes.extend(other.input_hashes.scenes);
         self.inputs_hash = self.input_hashes.whole();
-        Ok(self)
+        self
     }
 
     /// In what another manifest is of another run.
@@ -83,8 +98,13 @@ impl Manifest {
     /// As for [`Manifest::merge`].
     pub fn merge_all(manifests: impl IntoIterator<Item = Self>) -> Result<Option<Self>, Fault> {
         let mut manifests = manifests.into_iter();
-        let Some(first) = manifests.next() else { return Ok(None) };
-        manifests.try_fold(first, Self::merge).map(Some)
+        let Some(mut merged) = manifests.next() else { return Ok(None) };
+        let mut others = manifests.peekable();
+        if others.peek().is_none() {
+            return Ok(Some(merged));
+        }
+        others.try_for_each(|manifest| merged.take_in(manifest))?;
+        Ok(Some(merged.in_order()))
     }
 }
 

@@ -24,6 +24,7 @@
 mod aggregate_scene;
 mod check;
 mod config;
+mod cost;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
 mod flow;
@@ -33,14 +34,17 @@ mod memory;
 mod own_sensors;
 mod presets;
 mod rules;
+mod scene_work;
 mod standing;
 
 pub use aggregate_scene::{aggregate_scene, boxes_at, sort_scene};
 pub use config::{Autos, Config, EgoBox, GridFrame, GridTable, Limit, ReaderTables, VoxelSize};
+pub use cost::Cost;
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
 pub use occlabel_occlusion::Lenses;
 pub use own_sensors::{own_points, own_view};
 pub use presets::{PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_taxonomy};
 pub use rules::Rules;
+pub use scene_work::{CastingCost, SceneWork};
 pub use standing::standing_at;

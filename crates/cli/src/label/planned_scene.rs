@@ -8,17 +8,14 @@ use occlabel_dialects::KeyframeInfo;
 use occlabel_disk as disk;
 use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
-use occlabel_pipeline::MemoryModel;
+use occlabel_pipeline::{Cost, MemoryModel, SceneWork};
 use occlabel_simulate::World;
 
 use crate::label::findings::Findings;
 use crate::label::job::Job;
 use crate::label::scene_run::Finished;
+use crate::label::targets::LabelledGrid;
 use crate::lacks::lacks;
-
-/// What a ray costs, all stages included: measured with the preset `precise` on 32-beam scenes of 40
-/// keyframes.
-const CPU_SECONDS_A_RAY: f64 = 1.7e-7;
 
 /// A scene that will be labelled.
 pub(crate) struct PlannedScene {
@@ -40,6 +37,8 @@ pub(crate) struct PlannedScene {
     told: Vec<Fault>,
     /// An upper estimate of its points.
     pub(crate) points: u64,
+    /// What there is to do, by the grids that are labelled.
+    pub(crate) work: Vec<SceneWork>,
 }
 
 /// Why a scene cannot be labelled.
@@ -81,6 +80,7 @@ impl PlannedScene {
         let model = model.beside(reading_bytes);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
+            work: work(job, &scene, points, &wanted),
             name: name.to_owned(),
             record: scene_record(job, &scene).map_err(|fault| Refused::Broken(vec![fault]))?,
             infos: job.targets.infos(&scene).map_err(|fault| Refused::Broken(vec![fault]))?,
@@ -124,18 +124,20 @@ impl PlannedScene {
     }
 
     /// What labelling it is expected to cost.
-    pub(crate) fn cpu_seconds(&self) -> f64 {
-        self.rays() as f64 * CPU_SECONDS_A_RAY
+    pub(crate) fn cost(&self) -> Cost {
+        Cost::new(&self.work, self.memory_bytes)
     }
 
     /// One line for `--dry-run`.
     pub(crate) fn line(&self) -> String {
         let (keyframes, points, sweeps) = (self.wanted.len(), self.points, self.sweeps);
         let (name, bytes, rays) = (&self.name, self.bytes(), self.rays());
-        let (memory_bytes, seconds) = (self.memory_bytes, self.cpu_seconds());
+        let (memory_bytes, cost) = (self.memory_bytes, self.cost());
+        let (seconds, output_bytes) = (cost.cpu_seconds, cost.output_bytes);
         format!(
             "{name}: {keyframes} keyframes, {sweeps} sweeps, {bytes} bytes; at most {points} points, \
-             {rays} rays, {memory_bytes} bytes of memory; expected time {seconds:.1} CPU-seconds"
+             {rays} rays, {memory_bytes} bytes of memory; expected time {seconds:.1} CPU-seconds, \
+             {output_bytes:.0} bytes of labels"
         )
     }
 }
@@ -212,6 +214,17 @@ fn with_hint(job: &Job, fault: Fault) -> Fault {
             fault.hint("--allow-missing-sweeps labels without those that no keyframe needs")
         }
     }
+}
+
+/// What there is to do for a scene in each grid.
+fn work(job: &Job, scene: &Scene, points: u64, wanted: &BTreeSet<String>) -> Vec<SceneWork> {
+    let is_wanted = |keyframe: &&Keyframe| wanted.contains(&keyframe.token);
+    let keyframes: Vec<_> = scene.keyframes.iter().filter(is_wanted).collect();
+    let of_grid = |grid: &LabelledGrid| {
+        let evidence = job.args.evidence || grid.needs_evidence();
+        SceneWork::new(scene, points, &keyframes, &grid.rules, evidence)
+    };
+    job.targets.grids.iter().map(of_grid).collect()
 }
 
 /// How many keyframes fit into memory at once: into `--memory`, else into what the machine has left.

@@ -1,5 +1,6 @@
 //! The reports of shards as one: counts are summed, scenes and findings joined, the rest kept by shard.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use occlabel_core::Fault;
@@ -13,15 +14,20 @@ const OF_SHARD: [&str; 6] =
     ["outcome", "seconds", "cpu_seconds", "peak_memory_bytes", "threads", "host"];
 
 /// `report.json` of a run in shards, as far as they were merged.
-pub(super) struct MergedReport(Value);
+pub(super) struct MergedReport {
+    report: Value,
+    /// The shards it is of.
+    shards: BTreeSet<String>,
+}
 
 impl MergedReport {
     /// Of no shard.
     pub(super) fn empty() -> Self {
-        Self(json!({
+        let report = json!({
             "version": 1, "outcome": Outcome::Complete.name(), "scenes": {}, "total": {},
             "warnings": [], "skipped_or_degraded": [], "shards": [],
-        }))
+        });
+        Self { report, shards: BTreeSet::new() }
     }
 
     /// The report of an earlier merge; an empty one if it is gone.
@@ -32,13 +38,14 @@ impl MergedReport {
                 report[key] = json!([]);
             }
         }
-        Ok(Self(report))
+        let shards = report["shards"].as_array().into_iter().flatten();
+        let names = shards.filter_map(|shard| Some(shard["shard"].as_str()?.to_owned()));
+        Ok(Self { shards: names.collect(), report })
     }
 
     /// Whether a shard was merged.
     pub(super) fn holds(&self, shard: &RunFiles) -> bool {
-        let name = shard.shard_name();
-        self.list("shards").iter().any(|merged| merged["shard"].as_str() == name.as_deref())
+        shard.shard_name().is_some_and(|name| self.shards.contains(&name))
     }
 
     /// Merges a shard's, unless it was.
@@ -48,10 +55,10 @@ impl MergedReport {
         }
         let report: Value = read_json_file(&shard.report())?;
         for key in ["scenes", "total"] {
-            add(&mut self.0[key], &report[key]);
+            add(&mut self.report[key], &report[key]);
         }
         if report["outcome"] != Outcome::Complete.name() {
-            self.0["outcome"] = json!(Outcome::Degraded.name());
+            self.report["outcome"] = json!(Outcome::Degraded.name());
         }
         for key in ["warnings", "skipped_or_degraded"] {
             let findings = report[key].as_array().cloned().unwrap_or_default();
@@ -61,25 +68,22 @@ impl MergedReport {
         let mut kept = Value::Object(kept.collect());
         kept["shard"] = json!(shard.shard_name());
         self.extend("shards", [kept]);
+        self.shards.extend(shard.shard_name());
         Ok(())
     }
 
     /// How the shards that were merged ended.
     pub(super) fn outcome(&self) -> Outcome {
-        let is_complete = self.0["outcome"] == Outcome::Complete.name();
+        let is_complete = self.report["outcome"] == Outcome::Complete.name();
         if is_complete { Outcome::Complete } else { Outcome::Degraded }
     }
 
     pub(super) fn json(&self) -> &Value {
-        &self.0
-    }
-
-    fn list(&self, key: &str) -> &[Value] {
-        self.0[key].as_array().map_or(&[], Vec::as_slice)
+        &self.report
     }
 
     fn extend(&mut self, key: &str, more: impl IntoIterator<Item = Value>) {
-        if let Some(list) = self.0[key].as_array_mut() {
+        if let Some(list) = self.report[key].as_array_mut() {
             list.extend(more);
         }
     }
