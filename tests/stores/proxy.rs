@@ -35,14 +35,8 @@ pub(crate) const FAULTS: [Fate; 6] =
 /// Passes requests on to a store's port.
 pub(crate) struct Proxy {
     pub(crate) port: u16,
-    log: Arc<Mutex<Log>>,
-}
-
-/// What was asked for, and what became of it.
-#[derive(Default)]
-struct Log {
-    requests: Vec<(String, Fate)>,
-    answered_bytes: u64,
+    /// What was asked for, and what became of it.
+    log: Arc<Mutex<Vec<(String, Fate)>>>,
 }
 
 impl Proxy {
@@ -50,7 +44,7 @@ impl Proxy {
     pub(crate) fn before(store: u16, faults_in_100: u64) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
-        let log = Arc::<Mutex<Log>>::default();
+        let log = Arc::<Mutex<Vec<_>>>::default();
         let kept = log.clone();
         thread::spawn(move || {
             for stream in listener.incoming().map_while(Result::ok) {
@@ -65,7 +59,7 @@ impl Proxy {
     /// How many requests met each fate.
     pub(crate) fn fates(&self) -> BTreeMap<Fate, usize> {
         let mut counts = BTreeMap::new();
-        for (_, fate) in &self.log.lock().unwrap().requests {
+        for (_, fate) in self.log.lock().unwrap().iter() {
             *counts.entry(*fate).or_default() += 1;
         }
         counts
@@ -74,21 +68,16 @@ impl Proxy {
     /// How many requests began so.
     pub(crate) fn count(&self, beginning: &str) -> usize {
         let log = self.log.lock().unwrap();
-        log.requests.iter().filter(|(line, _)| line.starts_with(beginning)).count()
-    }
-
-    /// The bytes of all answers.
-    pub(crate) fn answered_bytes(&self) -> u64 {
-        self.log.lock().unwrap().answered_bytes
+        log.iter().filter(|(line, _)| line.starts_with(beginning)).count()
     }
 }
 
-fn serve(mut to: &TcpStream, store: u16, faults_in_100: u64, log: &Mutex<Log>) -> io::Result<()> {
+fn serve(mut to: &TcpStream, store: u16, faults_in_100: u64, log: &Mutex<Vec<(String, Fate)>>) -> io::Result<()> {
     let Some(request) = Request::read(to)? else { return Ok(()) };
     let fate = {
         let mut log = log.lock().unwrap();
-        let fate = fate(log.requests.len() as u64, faults_in_100);
-        log.requests.push((request.line.clone(), fate));
+        let fate = fate(log.len() as u64, faults_in_100);
+        log.push((request.line.clone(), fate));
         fate
     };
     let answer = match fate {
@@ -97,7 +86,6 @@ fn serve(mut to: &TcpStream, store: u16, faults_in_100: u64, log: &Mutex<Log>) -
         Fate::Busy503 => refusal("503 Slow Down"),
         _ => request.answer(store)?,
     };
-    log.lock().unwrap().answered_bytes += answer.len() as u64;
     match fate {
         Fate::AnswerLost => Ok(()),
         Fate::AnswerCut => to.write_all(&answer[..answer.len() * 2 / 3]),

@@ -20,6 +20,7 @@ use super::catalog::Catalog;
 use super::errors::io_error;
 use super::expected::Expected;
 use super::ranged_file::Piece;
+use super::recent::Recent;
 use crate::address::Address;
 
 /// Threads that wait for the network.
@@ -39,6 +40,7 @@ pub(crate) struct Connection {
     pub(crate) has_folders: bool,
     catalogs: Mutex<Vec<Arc<Catalog>>>,
     pub(crate) expected: Mutex<Expected>,
+    pub(crate) recent: Mutex<Recent>,
     received_bytes: AtomicU64,
 }
 
@@ -109,6 +111,7 @@ impl Connection {
             has_folders: false,
             catalogs: Mutex::default(),
             expected: Mutex::default(),
+            recent: Mutex::default(),
             received_bytes: AtomicU64::new(0),
         }
     }

@@ -14,6 +14,7 @@ mod errors;
 mod expected;
 mod object;
 mod ranged_file;
+mod recent;
 mod upload;
 
 pub(crate) use object::Object;

@@ -12,6 +12,7 @@ use super::connection::{Connection, locked, patiently, wait_for};
 use super::errors::io_error;
 use super::expected::{MAX_AHEAD_BYTES, MAX_OBJECT_BYTES};
 use super::ranged_file::{READER_BYTES, RangedFile};
+use super::recent::RECENT_BYTES;
 use super::upload;
 use crate::Metadata;
 use crate::address::Address;
@@ -128,7 +129,7 @@ impl Storage for Object {
     }
 
     fn reading_bytes(&self, readers: usize) -> u64 {
-        CLIENT_BYTES + MAX_AHEAD_BYTES + readers as u64 * (MAX_OBJECT_BYTES + READER_BYTES)
+        CLIENT_BYTES + MAX_AHEAD_BYTES + RECENT_BYTES + readers as u64 * (MAX_OBJECT_BYTES + READER_BYTES)
     }
 }
 

@@ -6,7 +6,7 @@ use bytes::Bytes;
 use object_store::Result as StoreResult;
 use tokio::task::JoinHandle;
 
-use super::connection::{begin, wait_for};
+use super::connection::{begin, locked, wait_for};
 use super::errors::io_error;
 use super::object::Object;
 use crate::storage::StoredFile;
@@ -14,8 +14,9 @@ use crate::storage::StoredFile;
 /// What is asked for when a file is opened: most sweeps and labels are shorter.
 pub(crate) const FIRST_BYTES: u64 = 1 << 20;
 
-/// What is asked for at least where a reader jumps to: it may jump on.
-const AFTER_A_JUMP_BYTES: u64 = 64 << 10;
+/// What is asked for at least where a reader jumps to, who may jump on: of a large object, the block that
+/// begins at a multiple of this.
+pub(crate) const BLOCK_BYTES: u64 = 64 << 10;
 
 /// What is asked for at most, of one who reads on and on.
 const MAX_BYTES: u64 = 4 << 20;
@@ -77,33 +78,52 @@ impl RangedFile {
 
     /// Moves the window here, for a reader who wants so many bytes.
     fn fill(&mut self, wanted: u64) -> io::Result<()> {
-        let reads_on = self.at == self.window.end();
-        self.asked_bytes = self.step(reads_on).max(wanted.min(MAX_BYTES));
+        let reads_on = self.at > 0 && self.at == self.window.end();
         let piece = match self.next.take() {
             Some(next) if next.from == self.at => wait_for(next.answer)?,
             unwanted => {
                 unwanted.inspect(|next| next.answer.abort());
-                wait_for(self.request(self.at))
+                self.fetch(reads_on, wanted)
             }
         };
         let piece = piece.map_err(io_error)?;
-        if piece.all_bytes != self.len() || piece.bytes.is_empty() {
+        if piece.all_bytes != self.len() || piece.end() <= self.at {
             return Err(io::Error::new(ErrorKind::UnexpectedEof, "another length than before"));
         }
         self.window = piece;
         let end = self.window.end();
-        if reads_on && self.at > 0 && end < self.len() {
+        if reads_on && end < self.len() {
             self.next = Some(Next { from: end, answer: begin(self.request(end)) });
         }
         Ok(())
     }
 
-    fn step(&self, reads_on: bool) -> u64 {
-        match reads_on {
-            true if self.at == 0 => FIRST_BYTES,
+    /// More than the last time for who reads on; all of a short object; a block for who jumps.
+    fn fetch(&mut self, reads_on: bool, wanted: u64) -> StoreResult<Piece> {
+        let is_short = self.len() <= MAX_BYTES;
+        self.asked_bytes = match reads_on {
             true => MAX_BYTES.min(2 * self.asked_bytes),
-            false => AFTER_A_JUMP_BYTES,
+            false if self.at == 0 && is_short => self.len(),
+            false => BLOCK_BYTES,
+        };
+        if !reads_on && !is_short && wanted < BLOCK_BYTES {
+            return self.block();
         }
+        self.asked_bytes = self.asked_bytes.max(wanted.min(MAX_BYTES));
+        wait_for(self.request(self.at))
+    }
+
+    /// The block that is here, which may have been fetched before.
+    fn block(&self) -> StoreResult<Piece> {
+        let Object { connection, key } = &self.object;
+        let from = self.at - self.at % BLOCK_BYTES;
+        let known = locked(&connection.recent).block(key, from);
+        if let Some(block) = known.filter(|block| block.is_of(&self.window)) {
+            return Ok(block);
+        }
+        let block = wait_for(self.request(from))?;
+        locked(&connection.recent).keep(key, &block);
+        Ok(block)
     }
 
     /// The next window from there, of the version that was opened.
@@ -115,6 +135,11 @@ impl RangedFile {
 }
 
 impl Piece {
+    /// Whether two pieces are of the same object and version, as far as one of nothing tells.
+    fn is_of(&self, other: &Self) -> bool {
+        other.version.as_ref().is_none_or(|version| self.version.as_ref() == Some(version))
+    }
+
     fn end(&self) -> u64 {
         self.from + self.bytes.len() as u64
     }

@@ -10,7 +10,7 @@ use object_store::path::Path as Key;
 use super::Object;
 use super::connection::Connection;
 use super::expected::MAX_AHEAD_BYTES;
-use super::ranged_file::FIRST_BYTES;
+use super::ranged_file::{BLOCK_BYTES, FIRST_BYTES};
 use crate::storage::{Put, Storage};
 
 fn store(has_pages: bool) -> Arc<Connection> {
@@ -69,7 +69,7 @@ fn of_a_large_object_comes_what_is_read() {
         file.read_exact(&mut [0; 16]).unwrap();
     }
     let jumped = store.received_bytes();
-    assert!((1 << 20..(1 << 20) + 40 * (64 << 10)).contains(&jumped), "{jumped}");
+    assert!((1 << 20..(1 << 20) + 40 * BLOCK_BYTES).contains(&jumped), "{jumped}");
     assert!(read(&store, "a") == all);
     assert_eq!(store.received_bytes() - jumped, all.len() as u64);
 
@@ -82,6 +82,19 @@ fn of_a_large_object_comes_what_is_read() {
         file.read_exact(&mut vec![0; 300_000]).unwrap();
     }
     assert_eq!(store.received_bytes() - before, 38 * 300_000, "of records whose place is known");
+
+    let before = store.received_bytes();
+    for _ in 0..3 {
+        let mut file = object(&store, "a").open().unwrap();
+        for at in (1_000..20 << 20).step_by(50_000) {
+            let mut bytes = [0; 100];
+            file.seek(SeekFrom::Start(at)).unwrap();
+            file.read_exact(&mut bytes).unwrap();
+            assert!(bytes == all[at as usize..at as usize + 100], "{at}");
+        }
+    }
+    let looked = store.received_bytes() - before;
+    assert!((19 << 20..22 << 20).contains(&looked), "a look at what is known is free: {looked}");
 }
 
 #[test]

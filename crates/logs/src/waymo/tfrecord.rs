@@ -51,14 +51,15 @@ pub(super) fn read_record(
         Fault::new("unreadable-file", place, "a readable record", error.to_string())
             .offset(record.start)
     };
-    file.seek(SeekFrom::Start(record.start)).map_err(unreadable)?;
-    let mut data = Vec::new();
     let whole = record.len() + TAIL_BYTES;
-    file.take(whole).read_to_end(&mut data).map_err(unreadable)?;
-    let checksum = data.split_off(data.len().min(record.len() as usize));
-    if checksum.len() as u64 != TAIL_BYTES {
-        return Err(cut_off(record.start, whole, data.len() as u64, place));
+    let left = file.seek(SeekFrom::End(0)).map_err(unreadable)?.saturating_sub(record.start);
+    if left < whole {
+        return Err(cut_off(record.start, whole, left, place));
     }
+    file.seek(SeekFrom::Start(record.start)).map_err(unreadable)?;
+    let mut data = vec![0; whole as usize];
+    file.read_exact(&mut data).map_err(unreadable)?;
+    let checksum = data.split_off(record.len() as usize);
     if checksum == masked_checksum(&data).to_le_bytes() {
         return Ok(data);
     }
