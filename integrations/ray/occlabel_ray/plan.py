@@ -5,9 +5,16 @@ import subprocess
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from occlabel_ray.label import COMPLETE, DEGRADED, USAGE
+
 
 class Refused(Exception):
-    """The program refuses its input or its configuration; trying again would not help."""
+    """Something that no further try would mend: the input, the configuration, the cluster."""
+
+    def __init__(self, told: str, code: int = USAGE) -> None:
+        """What is told, and the exit code of the run."""
+        super().__init__(told)
+        self.code = code
 
 
 @dataclass(frozen=True)
@@ -26,10 +33,17 @@ class Scene:
 
 def read_plan(program: str, flags: list[str]) -> list[Scene]:
     """The scenes of a log, by the flags that say which log and how it is labelled."""
-    ended = subprocess.run([program, "plan", *flags], capture_output=True, text=True)
-    if ended.returncode not in (0, 3):
-        raise Refused(ended.stderr.strip())
-    return [scene_of(json.loads(line)) for line in ended.stdout.splitlines()]
+    command = [program, "plan", *flags]
+    try:
+        ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    except OSError as error:
+        raise Refused(f"error: {program} cannot be started: {error}") from error
+    if ended.returncode not in (COMPLETE, DEGRADED):
+        raise Refused(ended.stderr.strip(), max(1, ended.returncode))
+    scenes = [scene_of(json.loads(line)) for line in ended.stdout.splitlines()]
+    if not scenes:
+        raise Refused("error: no scene to label")
+    return scenes
 
 
 def scene_of(line: dict) -> Scene:

@@ -1,0 +1,60 @@
+"""What the command says to those who err."""
+
+import os
+
+import pytest
+
+from occlabel_ray.command import main
+
+PLAN = (
+    """echo '{"scene": "s", "shard": "0/1", "keyframes": 1, "cpu_seconds": 1, "memory_bytes": 1}'"""
+)
+
+
+def told_by(capfd, *arguments):
+    """The exit code, and what was said on stderr."""
+    try:
+        code = main(["--output", "labels", *arguments, "--", "--format", "any"])
+    except SystemExit as exited:
+        code = exited.code
+    return code, capfd.readouterr().err
+
+
+def test_a_program_that_is_not_there(capfd):
+    code, told = told_by(capfd, "--program", "./absent")
+    assert (code, told.count("\n")) == (2, 1)
+    assert told.startswith("error: ./absent cannot be started: ")
+
+
+@pytest.mark.parametrize("code", [1, 2])
+def test_a_plan_that_the_program_refuses(capfd, program, code):
+    line = program(f"echo 'error: nowhere: expected a log, found nothing' >&2; exit {code}")
+    expected = "error: nowhere: expected a log, found nothing\n"
+    assert told_by(capfd, "--program", line) == (code, expected)
+
+
+def test_a_log_without_scenes(capfd, program):
+    assert told_by(capfd, "--program", program("exit 0")) == (2, "error: no scene to label\n")
+
+
+@pytest.mark.parametrize(
+    ("flags", "expected"),
+    [
+        (["--jobs", "0"], "at least 1"),
+        (["--tries", "none"], "invalid"),
+        (["--resume", "perhaps"], "invalid choice"),
+        (["--", "--output=elsewhere"], "--output=elsewhere is not said after `--`"),
+        (["--", "--shard", "0/4"], "--shard is not said after `--`"),
+    ],
+)
+def test_a_wrong_command_line(capfd, flags, expected):
+    code, told = told_by(capfd, *flags)
+    assert code == 2
+    assert expected in told.splitlines()[-1]
+
+
+def test_no_cluster_at_the_address(capfd, program):
+    pytest.importorskip("ray")
+    code, told = told_by(capfd, "--program", program(PLAN), "--address", "auto")
+    assert code == 2, os.environ.get("RAY_ADDRESS")
+    assert told.splitlines()[-1].startswith("error: no Ray cluster at auto: ")
