@@ -4,6 +4,7 @@ import argparse
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -20,6 +21,9 @@ from occlabel_ray.schedule import Outcome, run
 
 FAILED, INTERRUPTED = 1, 130
 """Further exit codes, as the program has them."""
+
+KNOCK_S = 10.0
+"""How long a cluster may take to answer."""
 
 OUR_FLAGS = ("--output", "--jobs", "--resume", "--shard", "--progress")
 """Flags of `occlabel label` that are not said behind `--`."""
@@ -100,10 +104,18 @@ def own_flags(args: argparse.Namespace, size: Size) -> list[str]:
 def connect(address: str) -> None:
     """Joins the cluster. A driver that is told to end does so as on Ctrl-C."""
     try:
+        knock(address)
         ray.init(address=address, log_to_driver=False, logging_level="warning")
-    except (ConnectionError, RuntimeError, ValueError, RayError) as error:
+    except (OSError, RuntimeError, ValueError, RayError) as error:
         raise Refused(f"error: no Ray cluster at {address}: {first_line(error)}") from error
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+
+def knock(address: str) -> None:
+    """Fails if nobody listens there: Ray itself would try for minutes."""
+    host, _, port = address.rpartition("//")[2].rpartition(":")
+    if host:
+        socket.create_connection((host, int(port)), KNOCK_S).close()
 
 
 def merge(program: str, output: str, outcome: Outcome) -> int:

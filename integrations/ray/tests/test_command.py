@@ -1,7 +1,5 @@
 """What the command says to those who err."""
 
-import os
-
 import pytest
 
 from occlabel_ray.command import main
@@ -53,8 +51,9 @@ def test_a_wrong_command_line(capfd, flags, expected):
     assert expected in told.splitlines()[-1]
 
 
-def test_no_cluster_at_the_address(capfd, program):
+@pytest.mark.parametrize("address", ["127.0.0.1:1", "ray://127.0.0.1:1", "127.0.0.1:port"])
+def test_no_cluster_at_the_address(capfd, program, address):
     pytest.importorskip("ray")
-    code, told = told_by(capfd, "--program", program(PLAN), "--address", "auto")
-    assert code == 2, os.environ.get("RAY_ADDRESS")
-    assert told.splitlines()[-1].startswith("error: no Ray cluster at auto: ")
+    code, told = told_by(capfd, "--program", program(PLAN), "--address", address)
+    assert (code, told.count("\n")) == (2, 1)
+    assert told.startswith(f"error: no Ray cluster at {address}: ")
