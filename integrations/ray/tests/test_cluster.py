@@ -21,6 +21,7 @@ needs_program = pytest.mark.skipif(
 )
 
 
+@pytest.mark.long
 def test_a_lost_node_and_a_poisoned_scene(nodes, program, tmp_path):
     """Each scene notes that it was begun and that it ended; shard 3 never does."""
     scenes = [f"s{at}" for at in range(8)]
@@ -73,6 +74,7 @@ def test_a_cluster_gives_the_tree_of_one_process(nodes, tmp_path):
 
 
 @needs_program
+@pytest.mark.long
 def test_an_interrupted_driver_ends_its_scenes_and_goes_on_later(nodes, tmp_path):
     log, output = tmp_path / "log", tmp_path / "labels"
     simulate(log)
