@@ -15,7 +15,7 @@ from ray.exceptions import RayError
 from occlabel_ray.cluster import Cluster, Size
 from occlabel_ray.label import COMPLETE, DEGRADED, Line
 from occlabel_ray.place import needs_of
-from occlabel_ray.plan import Refused, read_plan
+from occlabel_ray.plan import Refused, in_shards, read_plan
 from occlabel_ray.progress import Progress, lines, report
 from occlabel_ray.schedule import Outcome, run
 
@@ -52,7 +52,8 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     add("--output", required=True, help="the label tree, where every node sees it")
     add("--address", default="auto", help="the Ray cluster [default: the one at hand]")
     add("--program", default="occlabel", help="the program, on every node")
-    add("--jobs", type=at_least_one, default=1, help="CPUs for each scene [default: 1]")
+    add("--jobs", type=at_least_one, default=1, help="CPUs for each process [default: 1]")
+    add("--shards", type=at_least_one, help="processes in all [default: one for each scene]")
     add("--tries", type=at_least_one, default=3, help="then a scene is set aside [default: 3]")
     add("--timeout-s", type=float, help="after which a try has failed")
     add("--resume", choices=["if-same", "never", "always"], help="as of `occlabel label`")
@@ -76,6 +77,8 @@ def label_log(args: argparse.Namespace) -> int:
     """Plans, labels and merges."""
     flags = [*args.flags, "--jobs", str(args.jobs)]
     scenes = read_plan(args.program, flags)
+    if args.shards:
+        scenes = in_shards(scenes, args.shards)
     connect(args.address)
     size = Size(scenes, args.jobs)
     line = Line(args.program, [*flags, *own_flags(args, size)], os.getcwd(), args.timeout_s)

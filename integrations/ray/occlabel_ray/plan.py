@@ -3,7 +3,7 @@
 import json
 import subprocess
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from occlabel_ray.label import COMPLETE, DEGRADED, USAGE
 
@@ -19,9 +19,10 @@ class Refused(Exception):
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene as a work item."""
+    """A scene as a work item, or several that one process labels."""
 
     name: str
+    """Of several, it tells the first and how many more there are."""
     shard: str
     """``I/N``: what ``--shard`` is given."""
     keyframes: int
@@ -54,6 +55,30 @@ def scene_of(line: dict) -> Scene:
         keyframes=line["keyframes"],
         cpu_seconds=line["cpu_seconds"],
         memory_bytes=line["memory_bytes"],
+    )
+
+
+def in_shards(scenes: list[Scene], count: int) -> list[Scene]:
+    """The scenes in fewer shards, as `--shard` divides them: every N-th, counted from the I-th."""
+    shares: dict[int, list[Scene]] = {}
+    for scene in scenes:
+        index, of = map(int, scene.shard.split("/"))
+        if count >= of:
+            return scenes
+        shares.setdefault(index % count, []).append(scene)
+    return [as_one(share, f"{at}/{count}") for at, share in sorted(shares.items())]
+
+
+def as_one(scenes: list[Scene], shard: str) -> Scene:
+    """What one process labels, one after the other."""
+    first, *others = scenes
+    return replace(
+        first,
+        name=f"{first.name} and {len(others)} more" if others else first.name,
+        shard=shard,
+        keyframes=sum(scene.keyframes for scene in scenes),
+        cpu_seconds=sum(scene.cpu_seconds for scene in scenes),
+        memory_bytes=max(scene.memory_bytes for scene in scenes),
     )
 
 

@@ -28,7 +28,7 @@ class Progress:
             how = f"{how}, try {count}, set aside: {last.told}"
         else:
             how = f"{how}, try {count}, to be tried again: {last.told}"
-        self.tell(f"{outcome.ended()} of {outcome.scenes} scenes{self.left()}; {how}")
+        self.tell(f"{outcome.ended()} of {outcome.shards} shards{self.left()}; {how}")
 
     def seconds(self) -> float:
         """Since the beginning."""
@@ -47,7 +47,7 @@ def report(outcome: Outcome, places: int, seconds: float) -> dict:
     again = {name: len(of) for name, of in outcome.tries.items() if len(of) > 1}
     aside = {name: outcome.tries[name][-1].told for name in outcome.set_aside}
     return {
-        "scenes": outcome.scenes,
+        "shards": outcome.shards,
         "complete": len(outcome.complete),
         "degraded": outcome.degraded,
         "set_aside": aside,
@@ -65,7 +65,7 @@ def lines(report: dict) -> list[str]:
     """The same for people."""
     aside = [f"set aside: {name}: {told}" for name, told in report["set_aside"].items()]
     counts = (
-        f"{report['complete']} of {report['scenes']} scenes complete, "
+        f"{report['complete']} of {report['shards']} shards complete, "
         f"{len(report['degraded'])} with something left out, {len(aside)} set aside"
     )
     busy = report["labelling_seconds"] / max(1e-9, report["places"] * report["seconds"])

@@ -29,8 +29,8 @@ class Engine(Protocol):
 class Outcome:
     """What came of a run."""
 
-    scenes: int
-    """How many there are to label."""
+    shards: int
+    """How many there are to label: one a scene, or fewer."""
     tries: dict[str, list[Try]] = field(default_factory=dict)
     """All of each scene that was tried, in order."""
     complete: list[str] = field(default_factory=list)
@@ -53,7 +53,7 @@ def run(
     waiting = deque(largest_first(scenes))
     outcome = Outcome(len(waiting))
     try:
-        while outcome.ended() < outcome.scenes:
+        while outcome.ended() < outcome.shards:
             while waiting and engine.has_room():
                 engine.submit(waiting.popleft())
             for scene, last in engine.ended():

@@ -78,16 +78,21 @@ def test_a_cluster_gives_the_tree_of_one_process(nodes, tmp_path):
 def test_an_interrupted_driver_ends_its_scenes_and_goes_on_later(nodes, tmp_path):
     log, output = tmp_path / "log", tmp_path / "labels"
     simulate(log)
-    driver = drive(nodes, PROGRAM, output, flags(log))
+    more = ["--shards", max(1, SCENES // 2)]
+    driver = drive(nodes, PROGRAM, output, flags(log), more)
     begun = wait_for(lambda: list(labelling(PROGRAM, log)))
     os.kill(driver.pid, signal.SIGINT)
     assert driver.wait(40) == 130
     assert driver.told().endswith("interrupted: the same command goes on from here\n")
     assert wait_for(lambda: all(is_gone(process.pid) for process in begun))
     assert not list(labelling(PROGRAM, log))
-    again = drive(nodes, PROGRAM, output, flags(log))
+    again = drive(nodes, PROGRAM, output, flags(log), more)
     assert again.wait(100) == 0, again.told()
+    told = json.loads((tmp_path / "ray.json").read_text())
+    assert told["complete"] == max(1, SCENES // 2)
     command("verify", output)
+    labelled = json.loads((output / "manifest.json").read_text())["scenes"]
+    assert len(labelled) == SCENES
 
 
 def kill_a_worker(log, tree, scenes, spared):
@@ -118,12 +123,12 @@ def is_amid(tree, shard):
     return len(finished) > 0 and not (tree / f"manifest.{name}.json").exists()
 
 
-def drive(nodes, program, output, flags=()):
+def drive(nodes, program, output, flags=(), more=()):
     """Begins a driver, which reports to `ray.json` beside the output."""
     output = Path(output)
     folder = output if not flags else output.parent
     line = [sys.executable, "-m", "occlabel_ray", "--address", nodes.address]
-    line += ["--program", program, "--output", output, "--report", folder / "ray.json"]
+    line += ["--program", program, "--output", output, "--report", folder / "ray.json", *more]
     told = (folder / "told").open("w+")
     package = str(Path(__file__).parents[1])
     driver = subprocess.Popen(

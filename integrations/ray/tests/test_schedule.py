@@ -3,7 +3,7 @@
 import pytest
 
 from occlabel_ray.label import COMPLETE, DEGRADED, USAGE, Try
-from occlabel_ray.plan import Refused, Scene, largest_first, scene_of
+from occlabel_ray.plan import Refused, Scene, in_shards, largest_first, scene_of
 from occlabel_ray.progress import Progress, duration, lines, report
 from occlabel_ray.schedule import run
 
@@ -89,12 +89,12 @@ def test_an_interrupt_cancels_what_is_in_work():
 def test_the_report_counts_tries_and_tells_of_what_was_set_aside():
     engine = Played({"a": [FAILED, COMPLETE], "b": [None] * 2, "c": [DEGRADED]})
     told = report(run(scenes(a=1, b=2, c=3), engine, 2, nobody), places=2, seconds=7.0)
-    assert (told["scenes"], told["complete"], told["degraded"]) == (3, 1, ["c"])
+    assert (told["shards"], told["complete"], told["degraded"]) == (3, 1, ["c"])
     assert told["set_aside"] == {"b": "b said so"}
     assert (told["tries"], told["lost"], told["tried_again"]) == (5, 2, {"a": 2, "b": 2})
     assert lines(told) == [
         "set aside: b: b said so",
-        "1 of 3 scenes complete, 1 with something left out, 1 set aside; 5 tries",
+        "1 of 3 shards complete, 1 with something left out, 1 set aside; 5 tries",
         "7.0 s on 2 places, which labelled for 0% of it; 0.0 s of CPU",
     ]
 
@@ -105,8 +105,8 @@ def test_what_is_left_is_told_from_the_plan():
     progress = Progress(work, told.append)
     progress.began -= 60
     run(work, Played({"a": [COMPLETE], "b": [COMPLETE]}, places=1), 3, progress)
-    assert told[0].startswith("1 of 2 scenes, 20 s left; a: complete in ")
-    assert told[1].startswith("2 of 2 scenes; b: complete in ")
+    assert told[0].startswith("1 of 2 shards, 20 s left; a: complete in ")
+    assert told[1].startswith("2 of 2 shards; b: complete in ")
 
 
 @pytest.mark.parametrize(
@@ -120,3 +120,13 @@ def test_durations(seconds, told):
 def test_what_else_a_plan_says_is_left_aside():
     line = {"scene": "s", "shard": "0/1", "keyframes": 2, "cpu_seconds": 1.5, "memory_bytes": 3}
     assert scene_of({**line, "rays": 7}) == Scene("s", "0/1", 2, 1.5, 3)
+
+
+def test_fewer_shards_than_scenes_are_divided_as_the_program_does():
+    work = scenes(a=1, b=2, c=3, d=4, e=5)
+    assert in_shards(work, 5) == in_shards(work, 9) == work
+    assert in_shards(work, 2) == [
+        Scene("a and 2 more", "0/2", 120, 9, 1 << 30),
+        Scene("b and 1 more", "1/2", 80, 6, 1 << 30),
+    ]
+    assert [scene.name for scene in in_shards(work, 4)] == ["a and 1 more", "b", "c", "d"]
