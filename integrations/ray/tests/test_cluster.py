@@ -45,6 +45,37 @@ def test_a_lost_node_and_a_poisoned_scene(nodes, program, tmp_path):
     assert sorted(set(lines(tmp_path / "ended"))) == [str(at) for at in range(8) if at != 3]
 
 
+@pytest.mark.long
+def test_places_that_are_not_fit_are_told_and_not_used(nodes, program, tmp_path):
+    """The driver and the first place have one version of the program, the others another."""
+    does = f"""
+        cd {tmp_path}
+        case $1 in --version)
+            mkdir driver || mkdir first || {{ echo occlabel 2; exit; }}
+            echo occlabel 1
+            exit ;;
+        esac
+        {plan_of(["a", "b", "c", "d"])}
+        sleep 2"""
+    driver = drive(nodes, program(does), tmp_path)
+    assert driver.wait(100) == 0, driver.told()
+    told = json.loads((tmp_path / "ray.json").read_text())
+    assert (told["complete"], told["places"], told["tries"]) == (4, 1, 4)
+    assert driver.told().count("not used: ") == 1
+    assert "/occlabel is occlabel 2, the driver's is occlabel 1\n" in driver.told()
+
+
+@pytest.mark.long
+def test_without_a_fit_place_the_run_is_refused(nodes, program, tmp_path):
+    does = f"""
+        cd {tmp_path}
+        case $1 in --version) mkdir driver || exit 1; exit ;; esac
+        {plan_of(["a", "b"])}"""
+    driver = drive(nodes, program(does), tmp_path)
+    assert driver.wait(100) == 2
+    assert driver.told().endswith("error: no place is fit to label\n")
+
+
 @needs_program
 def test_a_cluster_gives_the_tree_of_one_process(nodes, tmp_path):
     """Two workers are killed amid a scene, and a scene is broken: all else is as one has it."""

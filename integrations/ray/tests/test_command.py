@@ -2,7 +2,9 @@
 
 import pytest
 
-from occlabel_ray.command import main
+from occlabel_ray import cluster
+from occlabel_ray.command import main, own_flags, parse
+from occlabel_ray.plan import Scene
 
 PLAN = (
     """echo '{"scene": "s", "shard": "0/1", "keyframes": 1, "cpu_seconds": 1, "memory_bytes": 1}'"""
@@ -57,3 +59,21 @@ def test_no_cluster_at_the_address(capfd, program, address):
     code, told = told_by(capfd, "--program", program(PLAN), "--address", address)
     assert (code, told.count("\n")) == (2, 1)
     assert told.startswith(f"error: no Ray cluster at {address}: ")
+
+
+@pytest.mark.parametrize(
+    ("nodes", "flags", "asked", "told"),
+    [
+        ([8, 6], [], 7, []),
+        ([5, 6], [], 6, ["--memory", "6"]),
+        ([5, 6], ["--memory=5"], 6, []),
+        ([0], [], 0, []),
+    ],
+)
+def test_a_place_asks_for_no_more_memory_than_a_node_has(monkeypatch, nodes, flags, asked, told):
+    monkeypatch.setattr(cluster, "of_nodes", lambda resource: nodes)
+    scenes = [Scene(str(need), "0/2", 1, 1.0, need) for need in (3, 7)]
+    size = cluster.Size(scenes, 1)
+    args = parse(["--output", "out", "--resume", "never", "--", "--format", "any", *flags])
+    assert size.memory_bytes == asked
+    assert own_flags(args, size) == ["--output", "out", "--resume", "never", *told]
