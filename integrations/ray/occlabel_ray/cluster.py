@@ -8,7 +8,7 @@ from ray.exceptions import RayError
 import occlabel_ray
 from occlabel_ray.label import Line, Try
 from occlabel_ray.place import Needs, Place
-from occlabel_ray.plan import Refused, Scene
+from occlabel_ray.plan import Refused, Scene, first_line
 
 # Nodes need Ray and the program, and not this package: what they run is sent to them.
 ray.cloudpickle.register_pickle_by_value(occlabel_ray)
@@ -18,6 +18,9 @@ LOOK_AGAIN_S = 5.0
 
 CANCELLED_S = 30.0
 """How long scenes in work may take to end when the run is ended."""
+
+LOST_AT_MOST = 10
+"""So many places may be lost as they open before any has opened."""
 
 
 class Cluster:
@@ -39,7 +42,7 @@ class Cluster:
         # They keep what they hold of their nodes, so that no other place opens there.
         self.unfit: list[ray.actor.ActorHandle] = []
         self.told: set[str] = set()
-        self.most_places = 0
+        self.most_places, self.lost = 0, 0
 
     def has_room(self) -> bool:
         """Whether a place is idle."""
@@ -77,13 +80,21 @@ class Cluster:
         place = self.coming.pop(reference)
         try:
             fault = ray.get(reference)
-        except RayError:
-            return
+        except RayError as error:
+            return self.lost_opening(error)
         (self.unfit if fault else self.idle).append(place)
         if fault:
             self.tell_once(f"not used: {fault}")
         if not self.idle and not self.running and not self.coming:
             raise Refused("error: no place is fit to label")
+
+    def lost_opening(self, error: RayError) -> None:
+        """Bears with places that are lost as they open, if not with all of them."""
+        self.lost += 1
+        told = f"a place was lost as it opened: {type(error).__name__}: {first_line(error)}"
+        self.tell_once(told)
+        if self.most_places == 0 and self.lost >= LOST_AT_MOST:
+            raise Refused(f"error: {told}")
 
     def end(self, reference: ray.ObjectRef) -> tuple[Scene, Try]:
         """What came of a scene; a place that was lost leaves a failed try."""

@@ -15,7 +15,7 @@ from ray.exceptions import RayError
 from occlabel_ray.cluster import Cluster, Size
 from occlabel_ray.label import COMPLETE, DEGRADED, Line
 from occlabel_ray.place import needs_of
-from occlabel_ray.plan import Refused, in_shards, read_plan
+from occlabel_ray.plan import Refused, first_line, in_shards, read_plan
 from occlabel_ray.progress import Progress, lines, report
 from occlabel_ray.schedule import Outcome, run
 
@@ -146,8 +146,3 @@ def write(path: Path | None, report: dict) -> int:
 def tell(line: str) -> None:
     """Says something to whoever watches."""
     print(line, file=sys.stderr, flush=True)
-
-
-def first_line(error: Exception) -> str:
-    """Of what an error says."""
-    return (str(error).strip().splitlines() or [type(error).__name__])[0]

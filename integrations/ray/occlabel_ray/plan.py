@@ -88,3 +88,8 @@ def largest_first(scenes: Iterable[Scene]) -> list[Scene]:
     Graham, Bounds on Multiprocessing Timing Anomalies, 1969: at most 4/3 of the best order.
     """
     return sorted(scenes, key=lambda scene: (-scene.cpu_seconds, scene.shard))
+
+
+def first_line(error: Exception) -> str:
+    """Of what an error says."""
+    return (str(error).strip().splitlines() or [type(error).__name__])[0]
