@@ -123,14 +123,15 @@ class Cluster:
 class Size:
     """How large places are, and how many at most."""
 
-    def __init__(self, scenes: Sequence[Scene], cpus: int) -> None:
-        """Any place may be given the scene that takes most memory."""
+    def __init__(self, scenes: Sequence[Scene], cpus: int, tables_bytes: int = 0) -> None:
+        """Any place may be given the scene that takes most memory, and reads the log's tables."""
         self.scenes, self.cpus = len(scenes), cpus
-        wanted = max(scene.memory_bytes for scene in scenes)
+        wanted = max(scene.memory_bytes for scene in scenes) + tables_bytes
         largest = int(max(of_nodes("memory"), default=0))
         self.memory_bytes = min(wanted, largest)
         """Ray would wait for ever for a node that has more than any."""
-        self.is_too_small = 0 < largest < wanted
+        self.bound_bytes = max(1, largest - tables_bytes) if 0 < largest < wanted else None
+        """For a scene, where no node has what is wanted."""
 
 
 def of_nodes(resource: str) -> list[float]:

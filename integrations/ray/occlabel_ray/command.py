@@ -76,11 +76,11 @@ def at_least_one(text: str) -> int:
 def label_log(args: argparse.Namespace) -> int:
     """Plans, labels and merges."""
     flags = [*args.flags, "--jobs", str(args.jobs)]
-    scenes = read_plan(args.program, flags)
+    scenes, tables_bytes = read_plan(args.program, flags)
     if args.shards:
         scenes = in_shards(scenes, args.shards)
     connect(args.address)
-    size = Size(scenes, args.jobs)
+    size = Size(scenes, args.jobs, tables_bytes)
     line = Line(args.program, [*flags, *own_flags(args, size)], os.getcwd(), args.timeout_s)
     with needs_of(line, args.output) as needs:
         cluster, progress = Cluster(line, needs, size, tell), Progress(scenes, tell)
@@ -99,8 +99,9 @@ def own_flags(args: argparse.Namespace, size: Size) -> list[str]:
     flags = ["--output", args.output]
     if args.resume:
         flags += ["--resume", args.resume]
-    if size.is_too_small and not any(flag.split("=")[0] == "--memory" for flag in args.flags):
-        flags += ["--memory", str(size.memory_bytes)]
+    is_bounded = any(flag.split("=")[0] == "--memory" for flag in args.flags)
+    if size.bound_bytes and not is_bounded:
+        flags += ["--memory", str(size.bound_bytes)]
     return flags
 
 

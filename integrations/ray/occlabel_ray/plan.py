@@ -1,7 +1,9 @@
 """What there is to label: the lines of ``occlabel plan``."""
 
 import json
+import resource
 import subprocess
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -32,8 +34,12 @@ class Scene:
     """What labelling it takes at most."""
 
 
-def read_plan(program: str, flags: list[str]) -> list[Scene]:
-    """The scenes of a log, by the flags that say which log and how it is labelled."""
+def read_plan(program: str, flags: list[str]) -> tuple[list[Scene], int]:
+    """The scenes of a log, by the flags that say which log and how it is labelled.
+
+    And the bytes of memory that its tables take, as far as the program that read them tells: each
+    process that labels reads them too.
+    """
     command = [program, "plan", *flags]
     try:
         ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
@@ -44,7 +50,13 @@ def read_plan(program: str, flags: list[str]) -> list[Scene]:
     scenes = [scene_of(json.loads(line)) for line in ended.stdout.splitlines()]
     if not scenes:
         raise Refused("error: no scene to label")
-    return scenes
+    return scenes, peak_bytes_of_children()
+
+
+def peak_bytes_of_children() -> int:
+    """What the largest program that this process started, and that has ended, had of memory."""
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit
 
 
 def scene_of(line: dict) -> Scene:

@@ -64,8 +64,8 @@ def test_no_cluster_at_the_address(capfd, program, address):
 @pytest.mark.parametrize(
     ("nodes", "flags", "asked", "told"),
     [
-        ([8, 6], [], 7, []),
-        ([5, 6], [], 6, ["--memory", "6"]),
+        ([8, 6], [], 8, []),
+        ([7, 6], [], 7, ["--memory", "6"]),
         ([5, 6], ["--memory=5"], 6, []),
         ([0], [], 0, []),
     ],
@@ -73,7 +73,7 @@ def test_no_cluster_at_the_address(capfd, program, address):
 def test_a_place_asks_for_no_more_memory_than_a_node_has(monkeypatch, nodes, flags, asked, told):
     monkeypatch.setattr(cluster, "of_nodes", lambda resource: nodes)
     scenes = [Scene(str(need), "0/2", 1, 1.0, need) for need in (3, 7)]
-    size = cluster.Size(scenes, 1)
+    size = cluster.Size(scenes, 1, tables_bytes=1)
     args = parse(["--output", "out", "--resume", "never", "--", "--format", "any", *flags])
     assert size.memory_bytes == asked
     assert own_flags(args, size) == ["--output", "out", "--resume", "never", *told]
