@@ -166,6 +166,27 @@ fn shards_that_end_late_are_merged_in_later() {
 }
 
 #[test]
+fn a_shard_that_was_merged_has_nothing_to_do_again() {
+    let log = TestLog::simulated(&nano_spec().with_scenes(3));
+    let shared = log.beside("shared");
+    let label = |shard| Label::new(&log.root(), &shared).small().with(&["--shard", shard]).run();
+    let merge = || occlabel(&["merge-manifests", text(&shared), "--without-missing"]);
+    for shard in ["0/3", "1/3"] {
+        label(shard).exits(0);
+    }
+    merge().exits(3);
+    let before = (tree_hash(&shared), report(&shared)["total"]["voxels"].clone());
+    for shard in ["0/3", "1/3"] {
+        let told = label(shard).exits(0).stdout;
+        assert!(told.contains("keyframes, 0 rays"), "{told}");
+    }
+    merge().exits(3);
+    assert_eq!((tree_hash(&shared), report(&shared)["total"]["voxels"].clone()), before);
+    assert!(!label("2/3").exits(0).stdout.contains("keyframes, 0 rays"), "it was not merged");
+    merge().exits(0);
+}
+
+#[test]
 fn fault_40_a_tree_holds_one_run_whole_or_in_shards() {
     let log = TestLog::simulated(&nano_spec().with_scenes(2));
     let (whole, shared) = (log.beside("whole"), log.beside("shared"));

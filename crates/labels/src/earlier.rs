@@ -81,6 +81,26 @@ impl Earlier {
             .collect()
     }
 
+    /// The keyframes that a shard's scenes have in the whole run that it was merged into, if they were made
+    /// of the same inputs and their files stand. Its own records left then.
+    pub(crate) fn merged(
+        files: &RunFiles,
+        now: &RunRecord,
+    ) -> Result<BTreeMap<(String, String), JournalEntry>, Fault> {
+        let whole = match files.as_shard() {
+            Some(_) => Self::load(&RunFiles::whole(files.tree().clone()))?,
+            None => return Ok(BTreeMap::new()),
+        };
+        let before = whole.manifest.as_ref().map(|manifest| &manifest.input_hashes.scenes);
+        let now = InputHashes::of(&now.inputs).scenes;
+        let is_same = |scene: &String| {
+            let before = before.and_then(|scenes| scenes.get(scene));
+            before.is_some() && before == now.get(scene)
+        };
+        let finished = whole.finished(files.tree()).into_iter();
+        Ok(finished.filter(|((scene, _), _)| is_same(scene)).collect())
+    }
+
     /// Removes all files of the earlier run, its records last, and the folders that this empties.
     pub(crate) fn remove(&self, files: &RunFiles) -> Result<(), Fault> {
         let (tree, paths) = (files.tree(), self.paths());

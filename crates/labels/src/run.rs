@@ -98,7 +98,7 @@ pub fn begin(files: &RunFiles, record: &RunRecord, resume: Resume) -> Result<Beg
     }
     let finished = match resume {
         Resume::Never => BTreeMap::new(),
-        Resume::IfSame | Resume::Always => earlier.finished(files.tree()),
+        Resume::IfSame | Resume::Always => finished_before(files, &earlier, record)?,
     };
     write_file(&files.run(), &json::pretty(record))?;
     let journal = Journal::create(&files.journal(), finished.values())?;
@@ -153,6 +153,17 @@ impl Begun {
             remove_empty_dirs(place.parent().unwrap_or(tree.root()), tree.root());
         }
     }
+}
+
+/// The keyframes that this run finished, and, of a shard, those that were merged since.
+fn finished_before(
+    files: &RunFiles,
+    earlier: &Earlier,
+    record: &RunRecord,
+) -> Result<BTreeMap<(String, String), JournalEntry>, Fault> {
+    let mut finished = Earlier::merged(files, record)?;
+    finished.extend(earlier.finished(files.tree()));
+    Ok(finished)
 }
 
 fn refuse_another(files: &RunFiles, differences: &[String]) -> Result<(), Fault> {

@@ -1,19 +1,21 @@
 """Labelling one scene: what a worker runs."""
 
 import ctypes
+import resource
 import signal
+import socket
 import subprocess
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 
 COMPLETE, USAGE, DEGRADED = 0, 2, 3
 """Exit codes of the program."""
 
 PR_SET_PDEATHSIG = 1
 """See prctl(2)."""
-
-PRCTL = getattr(ctypes.CDLL(None), "prctl", None)
-"""Looked up here: between fork and exec, little may be done safely."""
 
 LAST_CHARACTERS = 2000
 """How much of what the program said is kept."""
@@ -34,9 +36,22 @@ class Ending(Enum):
 class Try:
     """What came of labelling a scene once."""
 
-    ending: Ending
+    code: int | None
+    """The program's exit code; none if it has none, as it was not started or is lost."""
     told: str = ""
     """What the program said at last."""
+    seconds: float = 0.0
+    """How long the worker was at it."""
+    cpu_seconds: float = 0.0
+    """What the program took of CPUs."""
+    host: str = ""
+    """Where it ran, if that is known."""
+
+    @property
+    def ending(self) -> Ending:
+        """What the exit code says; a negative one is a signal's."""
+        endings = {COMPLETE: Ending.COMPLETE, DEGRADED: Ending.DEGRADED, USAGE: Ending.REFUSED}
+        return endings.get(self.code, Ending.FAILED)
 
 
 @dataclass(frozen=True)
@@ -58,27 +73,42 @@ def label(line: Line, shard: str) -> Try:
     Whatever ends it, nothing is half-written: a second try goes on where the first one ended.
     """
     command = [line.program, "label", *line.flags, "--shard", shard, "--progress", "none"]
+    began, cpu_before = time.monotonic(), cpu_seconds_of_children()
+    code, told = run(command, line.folder, line.timeout_s)
+    seconds, cpu = time.monotonic() - began, cpu_seconds_of_children() - cpu_before
+    return Try(code, told[-LAST_CHARACTERS:].strip(), seconds, cpu, socket.gethostname())
+
+
+def run(command: list[str], folder: str, timeout_s: float | None) -> tuple[int | None, str]:
+    """The exit code of a program, none if it did not end by itself, and what it said."""
     try:
         ended = subprocess.run(
             command,
-            cwd=line.folder,
-            timeout=line.timeout_s,
-            preexec_fn=die_with_parent,
+            cwd=folder,
+            timeout=timeout_s,
+            preexec_fn=ending_with_parent(),
+            stdin=subprocess.DEVNULL,
             capture_output=True,
-            text=True,
+            encoding="utf-8",
+            errors="replace",
         )
     except subprocess.TimeoutExpired:
-        return Try(Ending.FAILED, f"not done after {line.timeout_s} s")
-    return Try(ending_of(ended.returncode), ended.stderr[-LAST_CHARACTERS:].strip())
+        return None, f"not done after {timeout_s} s"
+    except OSError as error:
+        return None, f"cannot be started: {error}"
+    return ended.returncode, ended.stderr
 
 
-def ending_of(code: int) -> Ending:
-    """What an exit code says; a negative one is a signal's."""
-    endings = {COMPLETE: Ending.COMPLETE, DEGRADED: Ending.DEGRADED, USAGE: Ending.REFUSED}
-    return endings.get(code, Ending.FAILED)
+def cpu_seconds_of_children() -> float:
+    """What the programs that this process started, and that have ended, took of CPUs."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
-def die_with_parent() -> None:
-    """Has Linux kill this process when the one that started it is gone; elsewhere, does nothing."""
-    if PRCTL is not None:
-        PRCTL(PR_SET_PDEATHSIG, signal.SIGKILL)
+def ending_with_parent() -> Callable[[], object] | None:
+    """What has Linux kill a process when the one that started it is gone; elsewhere, nothing does.
+
+    It is looked up here: between fork and exec, little may be done safely.
+    """
+    prctl = getattr(ctypes.CDLL(None), "prctl", None)
+    return prctl and partial(prctl, PR_SET_PDEATHSIG, signal.SIGKILL)

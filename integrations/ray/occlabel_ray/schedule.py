@@ -1,6 +1,6 @@
 """Who labels what when: largest first, tried again, set aside after too many tries."""
 
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -18,19 +18,25 @@ class Engine(Protocol):
     def submit(self, scene: Scene) -> None:
         """Has a scene labelled as soon as somebody is free."""
 
-    def next_ended(self) -> tuple[Scene, Try]:
-        """Waits until one of the submitted scenes has ended, well or not."""
+    def ended(self) -> list[tuple[Scene, Try]]:
+        """Waits for some of the submitted scenes to end, well or not; perhaps in vain."""
+
+    def cancel(self) -> None:
+        """Ends all submitted scenes."""
 
 
 @dataclass
 class Outcome:
     """What came of a run."""
 
+    shards: int
+    """How many there are to label: one a scene, or fewer."""
+    tries: dict[str, list[Try]] = field(default_factory=dict)
+    """All of each scene that was tried, in order."""
     complete: list[str] = field(default_factory=list)
     degraded: list[str] = field(default_factory=list)
-    set_aside: dict[str, str] = field(default_factory=dict)
-    """Scenes that failed too often, with what was said of each at last."""
-    tries: Counter[str] = field(default_factory=Counter)
+    set_aside: list[str] = field(default_factory=list)
+    """Scenes that failed too often."""
 
     def ended(self) -> int:
         """How many scenes need nothing more."""
@@ -38,19 +44,25 @@ class Outcome:
 
 
 def run(
-    scenes: Iterable[Scene], engine: Engine, tries: int, tell: Callable[[str], None]
+    scenes: Iterable[Scene],
+    engine: Engine,
+    tries: int,
+    each: Callable[[Outcome, Scene, Try], None],
 ) -> Outcome:
-    """Labels all scenes, each in at most so many tries."""
+    """Labels all scenes, each in at most so many tries; `each` is told of every try."""
     waiting = deque(largest_first(scenes))
-    count, outcome = len(waiting), Outcome()
-    while outcome.ended() < count:
-        while waiting and engine.has_room():
-            engine.submit(waiting.popleft())
-        scene, last = engine.next_ended()
-        outcome.tries[scene.name] += 1
-        if not settle(outcome, scene, last, tries):
-            waiting.append(scene)
-        tell(line_of(outcome, count, scene, last))
+    outcome = Outcome(len(waiting))
+    try:
+        while outcome.ended() < outcome.shards:
+            while waiting and engine.has_room():
+                engine.submit(waiting.popleft())
+            for scene, last in engine.ended():
+                if not settle(outcome, scene, last, tries):
+                    waiting.append(scene)
+                each(outcome, scene, last)
+    except BaseException:
+        engine.cancel()
+        raise
     return outcome
 
 
@@ -58,21 +70,14 @@ def settle(outcome: Outcome, scene: Scene, last: Try, tries: int) -> bool:
     """Whether a scene needs nothing more."""
     if last.ending is Ending.REFUSED:
         raise Refused(last.told)
+    of_scene = outcome.tries.setdefault(scene.name, [])
+    of_scene.append(last)
     if last.ending is Ending.COMPLETE:
         outcome.complete.append(scene.name)
     elif last.ending is Ending.DEGRADED:
         outcome.degraded.append(scene.name)
-    elif outcome.tries[scene.name] >= tries:
-        outcome.set_aside[scene.name] = last.told
+    elif len(of_scene) >= tries:
+        outcome.set_aside.append(scene.name)
     else:
         return False
     return True
-
-
-def line_of(outcome: Outcome, count: int, scene: Scene, last: Try) -> str:
-    """How far the run is."""
-    line = f"{outcome.ended()} of {count} scenes; {scene.name}: {last.ending.value}"
-    if last.ending is not Ending.FAILED:
-        return line
-    fate = "set aside" if scene.name in outcome.set_aside else "tried again"
-    return f"{line} in try {outcome.tries[scene.name]}, {fate}: {last.told}"

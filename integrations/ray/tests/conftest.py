@@ -18,17 +18,17 @@ def program(tmp_path):
 
 @pytest.fixture
 def nodes():
-    """A head that labels nothing, and two nodes of one CPU each."""
+    """Three nodes of one CPU each: the head, and two more."""
     ray = pytest.importorskip("ray")
     from ray.cluster_utils import Cluster
 
     store = 100 * 2**20
-    head = {"num_cpus": 0, "include_dashboard": False, "object_store_memory": store}
+    node = {"num_cpus": 1, "object_store_memory": store}
+    head = {**node, "include_dashboard": False}
     cluster = Cluster(initialize_head=True, head_node_args=head)
-    cluster.add = lambda: cluster.add_node(num_cpus=1, object_store_memory=store)
-    cluster.labelling = [cluster.add(), cluster.add()]
+    cluster.add = lambda: cluster.add_node(**node)
+    cluster.further = [cluster.add(), cluster.add()]
     cluster.wait_for_nodes()
-    ray.init(address=cluster.address, log_to_driver=False)
     yield cluster
     ray.shutdown()
     cluster.shutdown()
