@@ -72,7 +72,12 @@ impl Proxy {
     }
 }
 
-fn serve(mut to: &TcpStream, store: u16, faults_in_100: u64, log: &Mutex<Vec<(String, Fate)>>) -> io::Result<()> {
+fn serve(
+    mut to: &TcpStream,
+    store: u16,
+    faults_in_100: u64,
+    log: &Mutex<Vec<(String, Fate)>>,
+) -> io::Result<()> {
     let Some(request) = Request::read(to)? else { return Ok(()) };
     let fate = {
         let mut log = log.lock().unwrap();

@@ -129,7 +129,10 @@ impl Storage for Object {
     }
 
     fn reading_bytes(&self, readers: usize) -> u64 {
-        CLIENT_BYTES + MAX_AHEAD_BYTES + RECENT_BYTES + readers as u64 * (MAX_OBJECT_BYTES + READER_BYTES)
+        CLIENT_BYTES
+            + MAX_AHEAD_BYTES
+            + RECENT_BYTES
+            + readers as u64 * (MAX_OBJECT_BYTES + READER_BYTES)
     }
 }
 
