@@ -66,7 +66,7 @@ const EVIDENCE_VOXEL: f64 = 33.9e-9;
 
 /// While neighbours are asked: MiB of the process, bytes of a point, and more of a labelled one. Else: what a
 /// point takes less than the bound has it.
-const MEMORY: [f64; 4] = [15.5, 50.27, 34.36, 27.87];
+const MEMORY: [f64; 4] = [15.5, 50.27, 34.36, 31.87];
 
 /// Bytes of a keyframe, as logarithms: for all, for the logarithms of a voxel's size, of the grid's area and of
 /// the near rays to a square metre of it, for the share of voxels that cameras look at, for the logarithm of how
@@ -102,7 +102,7 @@ impl Cost {
 fn scene_seconds(work: &SceneWork) -> f64 {
     let labelled = work.labelled_points;
     let queries = if labelled > 0.0 { work.points - labelled } else { 0.0 };
-    let tenfolds = (labelled / 1e5).ln_1p() / std::f64::consts::LN_10;
+    let tenfolds = libm::log1p(labelled / 1e5) / std::f64::consts::LN_10;
     PROCESS
         + work.sweeps * (OPENED_SWEEP + SWEEP)
         + work.points * POINT
@@ -164,10 +164,18 @@ fn output_bytes(work: &SceneWork) -> f64 {
     let rays_a_m2 = work.near_rays / work.keyframes / work.area_m2;
     let looks = ((work.looks + work.curved_looks) / work.voxels).min(1.0);
     let is_ruled = f64::from(u8::from(work.casting == CastingCost::RuledCounts));
-    let (size, area) = (work.voxel_size_m.ln(), work.area_m2.ln());
-    let features =
-        [1.0, size, area, rays_a_m2.max(1.0).ln(), looks, work.spread_m.ln_1p(), is_ruled];
-    let bytes = |of: [f64; 7]| of.iter().zip(features).map(|(a, x)| a * x).sum::<f64>().exp();
+    let (size, area) = (libm::log(work.voxel_size_m), libm::log(work.area_m2));
+    let features = [
+        1.0,
+        size,
+        area,
+        libm::log(rays_a_m2.max(1.0)),
+        looks,
+        libm::log1p(work.spread_m),
+        is_ruled,
+    ];
+    let sum = |of: [f64; 7]| of.iter().zip(features).map(|(a, x)| a * x).sum::<f64>();
+    let bytes = |of| libm::exp(sum(of));
     work.keyframes * (bytes(LABELS) + if work.evidence { bytes(EVIDENCE) } else { 0.0 })
 }
 

@@ -114,7 +114,7 @@ impl SceneWork {
             object_rays: a_sweep * object_rays(scene, wanted, rules),
             objects: rules.rays().settings.object_rays,
             casting: casting(rules, evidence),
-            voxel_size_m: size.product().cbrt(),
+            voxel_size_m: libm::cbrt(size.product()),
             area_m2: extent.x * extent.y,
             voxels: keyframes * rules.spec.len() as f64,
             looks: keyframes * looks,
@@ -255,5 +255,6 @@ fn pixels(scene: &Scene, rules: &Rules) -> f64 {
     }
     let cameras = scene.cameras.iter().map(|named| &named.camera);
     let all = cameras.map(|camera| f64::from(camera.width) * f64::from(camera.height));
-    all.sum::<f64>() / (rules.occlusion.pixel_stride as f64).powi(2)
+    let stride = rules.occlusion.pixel_stride as f64;
+    all.sum::<f64>() / (stride * stride)
 }

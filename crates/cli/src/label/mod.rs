@@ -19,7 +19,6 @@ mod targets;
 mod usage;
 mod workers;
 
-use occlabel_disk as disk;
 use occlabel_labels::LabelTree;
 
 use crate::args::LabelArgs;
@@ -71,9 +70,8 @@ fn label_scenes(
     let mut entries = Vec::new();
     for (at, planned) in plan.scenes.iter().enumerate() {
         let run = SceneRun { job, tree, planned, progress: &progress, interrupt };
-        let next = || plan.files_after(at, &finished);
-        disk::expect(&job.args.log.input, planned.files.iter().chain(next()));
-        let done = while_reading(&job.args.log.input, next(), || {
+        let next = plan.files_after(at, &finished);
+        let done = while_reading(&job.args.log.input, &planned.files, next, || {
             run.label(&finished, &mut begun.journal, &mut findings)
         })?;
         if interrupt.is_raised() {

@@ -67,7 +67,7 @@ impl Plan {
         &self,
         at: usize,
         finished: &Finished,
-    ) -> impl Iterator<Item = &(String, u64)> + Send {
+    ) -> impl Iterator<Item = &(String, u64)> + Clone + Send {
         let next = self.scenes.get(at + 1).filter(|next| !next.is_finished(finished));
         next.into_iter().flat_map(|next| &next.files)
     }

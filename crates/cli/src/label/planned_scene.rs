@@ -73,11 +73,7 @@ impl PlannedScene {
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
         let points = job.opened.source.scene_points(&scene);
-        let spec = job.targets.largest();
-        let evidence = job.args.evidence || job.targets.need_evidence();
-        let reading_bytes = disk::reading_bytes(&job.args.log.input, job.threads);
-        let model = MemoryModel::new(points, spec, scene.cameras.len(), evidence);
-        let model = model.beside(reading_bytes);
+        let model = memory_model(job, &scene, points);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
             work: work(job, &scene, points, &wanted),
@@ -225,6 +221,14 @@ fn work(job: &Job, scene: &Scene, points: u64, wanted: &BTreeSet<String>) -> Vec
         SceneWork::new(scene, points, &keyframes, &grid.rules, evidence)
     };
     job.targets.grids.iter().map(of_grid).collect()
+}
+
+/// What memory labelling takes, reading included.
+fn memory_model(job: &Job, scene: &Scene, points: u64) -> MemoryModel {
+    let evidence = job.args.evidence || job.targets.need_evidence();
+    let reading_bytes = disk::reading_bytes(&job.args.log.input, job.threads);
+    MemoryModel::new(points, job.targets.largest(), scene.cameras.len(), evidence)
+        .beside(reading_bytes)
 }
 
 /// How many keyframes fit into memory at once: into `--memory`, else into what the machine has left.

@@ -5,23 +5,28 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use occlabel_disk as disk;
+
 /// What is read ahead of a scene is at most this: it has to stay in memory until it is wanted.
 const MAX_BYTES: u64 = 2 << 30;
 
 /// Read at once.
 const PIECE_BYTES: usize = 1 << 20;
 
-/// Works, and has the system read files meanwhile: it keeps them where they are quickly found again,
-/// and gives that room away if anyone needs it. Nothing is kept here. What is wrong with a file will
-/// be told by who wants what is in it.
+/// Works on a scene's files, and has the system read the next scene's meanwhile: it keeps them where they
+/// are quickly found again, and gives that room away if anyone needs it. Nothing is kept here. What is
+/// wrong with a file will be told by who wants what is in it. From a store, some files of both are fetched
+/// before they are asked for.
 pub(crate) fn while_reading<'f, R>(
     root: &Path,
-    files: impl Iterator<Item = &'f (String, u64)> + Send,
+    files: &'f [(String, u64)],
+    next: impl Iterator<Item = &'f (String, u64)> + Clone + Send,
     work: impl FnOnce() -> R,
 ) -> R {
+    disk::expect(root, files.iter().chain(next.clone()));
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        scope.spawn(|| read(root, files, &is_over));
+        scope.spawn(|| read(root, next, &is_over));
         let result = work();
         is_over.store(true, Ordering::Relaxed);
         result
@@ -70,7 +75,7 @@ mod tests {
         let files = files(folder.path());
         let sum = read(folder.path(), files.iter(), &AtomicBool::new(false));
         assert_eq!(sum, 3 * PIECE_BYTES as u64 + 12);
-        assert_eq!(while_reading(folder.path(), files.iter(), || 5), 5);
+        assert_eq!(while_reading(folder.path(), &files[..1], files[1..].iter(), || 5), 5);
     }
 
     #[test]

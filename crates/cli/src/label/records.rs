@@ -80,8 +80,7 @@ fn files_of(target: &Target, entries: &[JournalEntry]) -> Vec<FileRecord> {
 
 /// The list of all keyframes that were finished.
 pub(crate) fn annotations(plan: &Plan, entries: &[JournalEntry]) -> Annotations {
-    let finished: BTreeSet<(&str, &str)> =
-        entries.iter().map(|entry| (entry.scene.as_str(), entry.keyframe.as_str())).collect();
+    let finished = finished(entries);
     let infos = |planned: &PlannedScene| {
         let mut infos = planned.infos.clone();
         infos.retain(|token, _| finished.contains(&(planned.name.as_str(), token.as_str())));
@@ -90,14 +89,18 @@ pub(crate) fn annotations(plan: &Plan, entries: &[JournalEntry]) -> Annotations 
     Annotations::of_scenes(plan.scenes.iter().map(infos).collect())
 }
 
+fn finished(entries: &[JournalEntry]) -> BTreeSet<(&str, &str)> {
+    entries.iter().map(|entry| (entry.scene.as_str(), entry.keyframe.as_str())).collect()
+}
+
 /// The planned scenes, with those keyframes that were finished.
 fn scene_records(plan: &Plan, entries: &[JournalEntry]) -> BTreeMap<String, SceneRecord> {
-    let is_finished = |scene: &str, token: &str| {
-        entries.iter().any(|entry| entry.scene == scene && entry.keyframe == token)
-    };
+    let finished = finished(entries);
     let record = |planned: &PlannedScene| {
         let mut record = planned.record.clone();
-        record.keyframes.retain(|token| is_finished(&planned.name, token));
+        record
+            .keyframes
+            .retain(|token| finished.contains(&(planned.name.as_str(), token.as_str())));
         (planned.name.clone(), record)
     };
     plan.scenes.iter().map(record).collect()
