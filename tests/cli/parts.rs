@@ -152,6 +152,11 @@ fn shards_that_end_late_are_merged_in_later() {
     for (shard, code) in [("1/3", 3), ("0/3", 3), ("2/3", 0)] {
         label(&shared).with(&["--shard", shard]).run().exits(0);
         without().exits(code);
+        let told = report(&shared);
+        let is_whole = code == 0;
+        assert_eq!(told["outcome"] == "complete", is_whole, "{told}");
+        assert_eq!(told["missing_shards"].as_array().unwrap().is_empty(), is_whole, "{told}");
+        merge(&shared).exits(if is_whole { 0 } else { 2 });
     }
     assert_eq!(tree_hash(&whole), tree_hash(&shared));
     let [theirs, ours] = [&whole, &shared].map(|tree| report(tree)["total"]["voxels"].clone());

@@ -1,7 +1,7 @@
 //! What a store cannot do, and what another does there.
 
 use crate::bucket::Bucket;
-use crate::support::{SMALL, TestLog};
+use crate::support::{Ended, SMALL, TestLog};
 
 #[test]
 fn what_is_not_in_a_store_is_told_in_a_line() {
@@ -14,10 +14,19 @@ fn what_is_not_in_a_store_is_told_in_a_line() {
         );
         ended.tells(&[&input]);
     }
-    for input in ["s3://", "s3://bucket/a/../b"] {
-        let ended = bucket.run(&["inspect", "--format", "nuscenes", "--input", input]).exits(2);
-        ended.tells(&[input]);
+    for url in ["s3://", "s3:///log", "s3://bucket/a/../b", "ftp://host/log", "file://host/log"] {
+        let read = ["inspect", "--format", "nuscenes", "--input", url];
+        bucket.run(&read).exits(2).tells(&[url, "the URL of a store"]);
+        let write = ["label", "--format", "nuscenes", "--input", "log", "--output", url];
+        bucket.run(&write).exits(2).tells(&[url, "the URL of a store"]);
     }
+    let mut command = bucket.command(&["verify", "s3://bucket/labels"]);
+    let ended = Ended::of(command.env("AWS_ENDPOINT_URL", "127.0.0.1:9000").output().unwrap());
+    ended.exits(2).tells(&["AWS_ENDPOINT_URL is no URL"]);
+    bucket
+        .run(&["simulate", "--world", "street", "--format", "nuscenes", "--output", "s3://b/log"])
+        .exits(2)
+        .tells(&["a folder of this machine"]);
     bucket.run(&["verify", &bucket.url("absent")]).exits(2).tells(&[&bucket.url("absent")]);
 }
 

@@ -22,6 +22,7 @@ use crate::exit::Stop;
 use crate::format_flags::check_flags;
 use crate::format_hint::{check_input, with_format};
 use crate::presets::unknown_preset;
+use crate::urls::check_url;
 
 /// A log, and what decides its labels.
 pub(crate) struct Opened {
@@ -60,6 +61,7 @@ pub(crate) fn open_with(log: &LogArgs, args: &ConfigArgs, stead: &Stead) -> Resu
 
 /// Opens the log by a configuration, which is resolved against it.
 pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Result<Opened, Stop> {
+    check_url(&log.input)?;
     check_input(&log.input).map_err(Stop::usage)?;
     disk::expect_no_change(&log.input);
     let scenes = wanted_scenes(log).map_err(Stop::usage)?;

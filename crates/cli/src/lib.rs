@@ -40,6 +40,7 @@ mod report;
 mod shown_set;
 mod simulate;
 mod threads;
+mod urls;
 mod verify;
 mod view;
 

@@ -41,8 +41,8 @@ pub use address::is_stored;
 pub use file::{File, into_std};
 pub use metadata::{Entry, Metadata};
 pub use operations::{
-    canonicalize, create_dir, exists, expect, expect_no_change, is_dir, is_file, list, metadata,
-    open, open_to_append, open_to_lock, read, read_to_string, reading_bytes, remove_dir,
+    canonicalize, check_url, create_dir, exists, expect, expect_no_change, is_dir, is_file, list,
+    metadata, open, open_to_append, open_to_lock, read, read_to_string, reading_bytes, remove_dir,
     remove_file, symlink_metadata, sync,
 };
 pub use part::Part;

@@ -9,6 +9,11 @@ use crate::growing_file::GrowingFile;
 use crate::place::Place;
 use crate::{Entry, File, Metadata, before, is_stored};
 
+/// Whether a path leads anywhere: to a disk, or by a URL to a store of which one knows how to ask it.
+pub fn check_url(path: &Path) -> io::Result<()> {
+    Place::of(path).map(|_| ())
+}
+
 /// Opens a file to be read.
 pub fn open(path: &Path) -> io::Result<File> {
     before(Open)?;

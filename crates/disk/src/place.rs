@@ -21,7 +21,7 @@ impl<'a> Place<'a> {
         if let Some(address) = Address::of(path)? {
             return stored(&address).map(Self::Stored);
         }
-        Ok(Self::Local(path_of_file_url(path).map_or(Cow::Borrowed(path), Cow::Owned)))
+        Ok(Self::Local(path_of_file_url(path)?.map_or(Cow::Borrowed(path), Cow::Owned)))
     }
 }
 

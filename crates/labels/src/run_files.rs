@@ -46,7 +46,7 @@ impl RunFiles {
     }
 
     /// Which shard of how many it is, if it is one.
-    pub(crate) fn as_shard(&self) -> Option<(usize, usize)> {
+    pub fn as_shard(&self) -> Option<(usize, usize)> {
         self.shard
     }
 

@@ -16,10 +16,12 @@ use crate::convert::report::Report;
 use crate::exit::{Outcome, Stop};
 use crate::interrupt::Interrupt;
 use crate::threads::start_threads;
+use crate::urls::check_url;
 
 pub(crate) fn run(args: &ConvertArgs, console: &Console) -> Result<Outcome, Stop> {
     let interrupt = Interrupt::listen();
     start_threads(args.jobs);
+    check_url(&args.output)?;
     let job = Job::plan(args)?;
     let record = records::run_record(&job)?;
     let files = RunFiles::whole(LabelTree::new(&args.output));

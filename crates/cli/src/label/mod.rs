@@ -35,9 +35,11 @@ use crate::label::redo::Redo;
 use crate::label::report::Report;
 use crate::label::scene_run::SceneRun;
 use crate::progress::Progress;
+use crate::urls::check_url;
 
 pub(crate) fn run(args: &LabelArgs, console: &Console) -> Result<Outcome, Stop> {
     let interrupt = Interrupt::listen();
+    check_url(&args.output)?;
     let job = Job::open(&args.work, console)?;
     let mut findings = Findings::default();
     let plan = Plan::make(&job, args.shard, &mut findings, &interrupt)?;

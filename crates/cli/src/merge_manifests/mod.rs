@@ -16,8 +16,10 @@ use crate::exit::{Outcome, Stop};
 use crate::merge_manifests::files_of_whole::with_files_of_whole;
 use crate::merge_manifests::reports::MergedReport;
 use crate::merge_manifests::shard_files::remove_merged;
+use crate::urls::check_url;
 
 pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<Outcome, Stop> {
+    check_url(&args.labels)?;
     let tree = LabelTree::new(&args.labels);
     let whole = RunFiles::whole(tree.clone());
     let earlier = Manifest::load(&whole.manifest())?;
@@ -27,8 +29,8 @@ pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<Outcome, Stop> 
         None => MergedReport::empty(),
     };
     let shards = Shards::find(tree.root()).map_err(Stop::usage)?;
-    let missing = shards.absent.iter().filter(|shard| !report.holds(shard));
-    let missing: Vec<Fault> = missing.map(not_ended).collect();
+    report.expect(&shards);
+    let missing: Vec<Fault> = report.missing(&tree).iter().map(not_ended).collect();
     if !missing.is_empty() && !args.without_missing {
         return Err(Stop::Usage(missing));
     }
@@ -38,7 +40,7 @@ pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<Outcome, Stop> 
     let keyframes: usize = merged.scenes.values().map(|scene| scene.keyframes.len()).sum();
     let (scenes, files) = (merged.scenes.len(), merged.files.len());
     console.result(&format!("{scenes} scenes, {keyframes} keyframes, {files} files"));
-    Ok(if missing.is_empty() { report.outcome() } else { Outcome::Degraded })
+    Ok(report.outcome())
 }
 
 /// Writes the whole run's files, the manifest last; nothing if it says all that the shards do.

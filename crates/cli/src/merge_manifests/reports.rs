@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use occlabel_core::Fault;
-use occlabel_labels::{RunFiles, read_json, read_json_file};
+use occlabel_labels::{LabelTree, RunFiles, Shards, read_json, read_json_file};
 use serde_json::{Value, json};
 
 use crate::exit::Outcome;
@@ -18,6 +18,8 @@ pub(super) struct MergedReport {
     report: Value,
     /// The shards it is of.
     shards: BTreeSet<String>,
+    /// Those that have not ended.
+    missing: BTreeSet<(usize, usize)>,
 }
 
 impl MergedReport {
@@ -27,7 +29,7 @@ impl MergedReport {
             "version": 1, "outcome": Outcome::Complete.name(), "scenes": {}, "total": {},
             "warnings": [], "skipped_or_degraded": [], "shards": [],
         });
-        Self { report, shards: BTreeSet::new() }
+        Self { report, shards: BTreeSet::new(), missing: BTreeSet::new() }
     }
 
     /// The report of an earlier merge; an empty one if it is gone.
@@ -40,7 +42,25 @@ impl MergedReport {
         }
         let shards = report["shards"].as_array().into_iter().flatten();
         let names = shards.filter_map(|shard| Some(shard["shard"].as_str()?.to_owned()));
-        Ok(Self { shards: names.collect(), report })
+        let shards: BTreeSet<String> = names.collect();
+        let missing = others(&shards);
+        Ok(Self { shards, missing, report })
+    }
+
+    /// Shards that stand in the tree are no longer missing, and tell of those that are.
+    pub(super) fn expect(&mut self, shards: &Shards) {
+        let absent = shards.absent.iter().filter(|shard| !self.holds(shard));
+        let absent: BTreeSet<_> = absent.filter_map(RunFiles::as_shard).collect();
+        self.missing.extend(absent);
+        for ended in shards.ended.iter().filter_map(|(files, _)| files.as_shard()) {
+            self.missing.remove(&ended);
+        }
+    }
+
+    /// Shards that have not ended.
+    pub(super) fn missing(&self, tree: &LabelTree) -> Vec<RunFiles> {
+        let files = |&(index, count): &_| RunFiles::shard(tree.clone(), index, count);
+        self.missing.iter().map(files).collect()
     }
 
     /// Whether a shard was merged.
@@ -57,9 +77,6 @@ impl MergedReport {
         for key in ["scenes", "total"] {
             add(&mut self.report[key], &report[key]);
         }
-        if report["outcome"] != Outcome::Complete.name() {
-            self.report["outcome"] = json!(Outcome::Degraded.name());
-        }
         for key in ["warnings", "skipped_or_degraded"] {
             let findings = report[key].as_array().cloned().unwrap_or_default();
             self.extend(key, findings);
@@ -72,14 +89,19 @@ impl MergedReport {
         Ok(())
     }
 
-    /// How the shards that were merged ended.
+    /// How the run ended: complete if all shards have, and did so.
     pub(super) fn outcome(&self) -> Outcome {
-        let is_complete = self.report["outcome"] == Outcome::Complete.name();
-        if is_complete { Outcome::Complete } else { Outcome::Degraded }
+        let mut shards = self.report["shards"].as_array().into_iter().flatten();
+        let is_complete = shards.all(|shard| shard["outcome"] == Outcome::Complete.name());
+        if is_complete && self.missing.is_empty() { Outcome::Complete } else { Outcome::Degraded }
     }
 
-    pub(super) fn json(&self) -> &Value {
-        &self.report
+    pub(super) fn json(&self) -> Value {
+        let mut report = self.report.clone();
+        report["outcome"] = json!(self.outcome().name());
+        let name = |(index, count): &(usize, usize)| format!("{index}-of-{count}");
+        report["missing_shards"] = self.missing.iter().map(name).collect();
+        report
     }
 
     fn extend(&mut self, key: &str, more: impl IntoIterator<Item = Value>) {
@@ -87,6 +109,17 @@ impl MergedReport {
             list.extend(more);
         }
     }
+}
+
+/// The shards that these leave out.
+fn others(shards: &BTreeSet<String>) -> BTreeSet<(usize, usize)> {
+    let parse = |name: &String| {
+        let (index, count) = name.split_once("-of-")?;
+        Some((index.parse().ok()?, count.parse().ok()?))
+    };
+    let known: BTreeSet<(usize, usize)> = shards.iter().filter_map(parse).collect();
+    let count = known.first().map_or(0, |(_, count)| *count);
+    (0..count).map(|index| (index, count)).filter(|shard| !known.contains(shard)).collect()
 }
 
 /// Adds numbers to numbers, key by key; peaks become the highest; what is there once stays as it is.

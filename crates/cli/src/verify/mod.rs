@@ -16,11 +16,13 @@ use crate::args::VerifyArgs;
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
 use crate::threads::start_threads;
+use crate::urls::check_url;
 use crate::verify::reopened::reopened;
 use crate::verify::verdict::{Defect, Verdict};
 
 pub(crate) fn run(args: &VerifyArgs, console: &Console) -> Result<Outcome, Stop> {
     start_threads(args.jobs);
+    check_url(&args.labels)?;
     let manifest = load(&args.labels)?;
     let tree = LabelTree::new(&args.labels);
     let verdict = Verdict::new(&manifest, defects(&tree, &manifest)?);

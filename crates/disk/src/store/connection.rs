@@ -12,11 +12,13 @@ use object_store::gcp::GoogleCloudStorageBuilder;
 use object_store::http::HttpBuilder;
 use object_store::path::Path as Key;
 use object_store::{
-    ClientOptions, GetOptions, GetRange, ObjectStore, ObjectStoreExt, Result as StoreResult,
+    BackoffConfig, ClientOptions, GetOptions, GetRange, ObjectStore, ObjectStoreExt,
+    Result as StoreResult, RetryConfig,
 };
 use tokio::runtime::Runtime;
 
 use super::catalog::Catalog;
+use super::environment::check_variables;
 use super::errors::io_error;
 use super::expected::Expected;
 use super::ranged_file::Piece;
@@ -26,8 +28,9 @@ use crate::address::Address;
 /// Threads that wait for the network.
 const THREADS: usize = 2;
 
-/// How long a cut answer is asked for again, and after which pause at first.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// How long a request that fails is asked again, and after which pause at first. Stores under load refuse
+/// requests for minutes.
+const PATIENCE: Duration = Duration::from_secs(3 * 60);
 const FIRST_PAUSE: Duration = Duration::from_millis(100);
 
 /// A store, with what is known and expected of it.
@@ -41,7 +44,8 @@ pub(crate) struct Connection {
     catalogs: Mutex<Vec<Arc<Catalog>>>,
     pub(crate) expected: Mutex<Expected>,
     pub(crate) recent: Mutex<Recent>,
-    received_bytes: AtomicU64,
+    /// Answers with bytes of objects, and these bytes.
+    received: [AtomicU64; 2],
 }
 
 static CONNECTIONS: Mutex<BTreeMap<(String, String), Arc<Connection>>> =
@@ -96,6 +100,7 @@ impl Connection {
         if let Some(connection) = all.get(&name) {
             return Ok(connection.clone());
         }
+        check_variables(std::env::vars_os())?;
         let store = connect(address).map_err(io_error)?;
         let has_pages = matches!(address.scheme.as_str(), "s3" | "s3a" | "gs");
         let has_folders = address.scheme.starts_with("http");
@@ -112,7 +117,7 @@ impl Connection {
             catalogs: Mutex::default(),
             expected: Mutex::default(),
             recent: Mutex::default(),
-            received_bytes: AtomicU64::new(0),
+            received: Default::default(),
         }
     }
 
@@ -144,7 +149,8 @@ impl Connection {
         };
         let (all_bytes, version) = (got.meta.size, got.meta.e_tag.clone());
         let bytes = got.bytes().await?;
-        self.received_bytes.fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        self.received[0].fetch_add(1, Ordering::Relaxed);
+        self.received[1].fetch_add(bytes.len() as u64, Ordering::Relaxed);
         Ok(Piece { from, all_bytes, version, bytes })
     }
 
@@ -154,10 +160,10 @@ impl Connection {
         Some(Piece { from: 0, all_bytes: 0, version: meta.e_tag, bytes: Default::default() })
     }
 
-    /// Bytes of objects that came.
+    /// How many answers had bytes of objects, and how many these were.
     #[cfg(test)]
-    pub(crate) fn received_bytes(&self) -> u64 {
-        self.received_bytes.load(Ordering::Relaxed)
+    pub(crate) fn received(&self) -> [u64; 2] {
+        [0, 1].map(|at| self.received[at].load(Ordering::Relaxed))
     }
 
     /// What is remembered of the folder that does not change and holds this object, if there is one.
@@ -190,20 +196,31 @@ fn connect(address: &Address) -> StoreResult<Arc<dyn ObjectStore>> {
     // Whichever was first stays.
     let _ = rustls::crypto::ring::default_provider().install_default();
     let Address { scheme, host, .. } = address;
-    let url = format!("{scheme}://{host}");
+    let (url, again) = (format!("{scheme}://{host}"), patience());
     Ok(match scheme.as_str() {
-        "s3" | "s3a" => Arc::new(AmazonS3Builder::from_env().with_url(url).build()?),
-        "gs" => Arc::new(GoogleCloudStorageBuilder::from_env().with_url(url).build()?),
+        "s3" | "s3a" => {
+            Arc::new(AmazonS3Builder::from_env().with_url(url).with_retry(again).build()?)
+        }
+        "gs" => {
+            Arc::new(GoogleCloudStorageBuilder::from_env().with_url(url).with_retry(again).build()?)
+        }
         "az" | "abfs" | "abfss" => {
-            Arc::new(MicrosoftAzureBuilder::from_env().with_url(url).build()?)
+            Arc::new(MicrosoftAzureBuilder::from_env().with_url(url).with_retry(again).build()?)
         }
         "http" | "https" => {
             let options = ClientOptions::new().with_allow_http(scheme == "http");
-            Arc::new(HttpBuilder::new().with_url(url).with_client_options(options).build()?)
+            let builder = HttpBuilder::new().with_url(url).with_client_options(options);
+            Arc::new(builder.with_retry(again).build()?)
         }
         _ => {
             let source = io::Error::new(ErrorKind::Unsupported, "no such store");
             return Err(object_store::Error::NotSupported { source: source.into() });
         }
     })
+}
+
+/// The time alone ends it.
+fn patience() -> RetryConfig {
+    let backoff = BackoffConfig { init_backoff: FIRST_PAUSE, ..BackoffConfig::default() };
+    RetryConfig { backoff, max_retries: usize::MAX, retry_timeout: PATIENCE }
 }

@@ -10,6 +10,7 @@
 
 mod catalog;
 mod connection;
+mod environment;
 mod errors;
 mod expected;
 mod object;

@@ -93,6 +93,7 @@ impl RangedFile {
         self.window = piece;
         let end = self.window.end();
         if reads_on && end < self.len() {
+            self.asked_bytes = MAX_BYTES.min(2 * self.asked_bytes);
             self.next = Some(Next { from: end, answer: begin(self.request(end)) });
         }
         Ok(())

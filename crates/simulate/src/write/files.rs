@@ -38,6 +38,10 @@ impl Output {
     /// # Errors
     /// If the folder holds anything else (rule `output`), or cannot be made.
     pub fn create(root: &Path) -> Result<Self, Fault> {
+        if root.to_str().is_some_and(|root| root.contains("://")) {
+            let (place, found) = (root.display().to_string(), "a URL");
+            return Err(Fault::new("output", place, "a folder of this machine", found));
+        }
         let is_new = !root.exists();
         fs::create_dir_all(root).map_err(|error| refused(root, &error))?;
         if let Some(found) = names_in(root)?.iter().find(|name| *name != PART) {
