@@ -231,23 +231,28 @@ mod tests {
         }
     }
 
-    /// But for grids of 102 m, which are not as full as ours, and for voxels of 0.8 m under many rays.
-    #[test]
-    fn labels_of_other_worlds_take_the_bytes_that_were_expected_within_a_fifth() {
-        let mut errors = errors("check", "output_bytes");
-        assert_eq!(beyond(errors.clone(), 0.6), []);
-        errors.retain(|(name, _)| !name.ends_with("-wide") && !name.ends_with("-0.8"));
-        assert!(errors.len() >= 15, "{} runs", errors.len());
-        assert_eq!(beyond(errors, 0.2), []);
+    /// The names of the runs that are further off than a fifth.
+    fn missed(set: &str, key: &str) -> Vec<String> {
+        beyond(errors(set, key), 0.2).into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Their rays are shorter than those of a drive, which no table tells.
+    /// Where a fifth is not reached: docs/cost.md says so, and why.
     #[test]
-    fn walks_among_people_cost_at_most_what_was_expected_and_a_fifth() {
-        let off = |key| errors("walk", key).into_iter().map(|(_, off)| off);
-        assert!(off("cpu_seconds").all(|off| (-0.2..0.8).contains(&off)));
-        assert!(off("memory_bytes").all(|off| off.abs() < 0.2));
-        assert_eq!(off("cpu_seconds").count(), 9);
+    fn what_the_model_misses_is_what_the_page_names() {
+        let bytes = ["five-lidars precise-0.8", "hill-64 occ3d-wide", "hill-64 precise-wide"];
+        assert_eq!(missed("check", "output_bytes"), bytes);
+        let walks = [
+            "crowd occ3d",
+            "crowd paper",
+            "crowd precise",
+            "crowd precise-2",
+            "crowd-48 occ3d",
+            "crowd-48 occ3d-evidence",
+            "crowd-48 precise",
+            "crowd-48 precise-0.2",
+        ];
+        assert_eq!(missed("walk", "cpu_seconds"), walks);
+        assert_eq!(missed("walk", "memory_bytes"), [""; 0]);
     }
 
     #[test]
