@@ -16,6 +16,7 @@ pub const PRESETS: &[(&str, &str)] = shipped!(
 /// Taxonomies by name.
 pub const TAXONOMIES: &[(&str, &str)] = shipped!(
     "taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc" "semantickitti" "argoverse2"
+    "coda"
 );
 
 /// The text of a preset.
