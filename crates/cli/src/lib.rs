@@ -17,6 +17,7 @@ mod compare;
 mod completions;
 mod console;
 mod convert;
+mod decoded_image;
 mod demo;
 mod describe;
 mod evaluate;
@@ -32,6 +33,7 @@ mod lacks;
 mod logged_scene;
 mod merge_manifests;
 mod plan;
+mod polarization;
 mod presets;
 mod progress;
 mod quality;
@@ -130,6 +132,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
         Command::View(args) => view::run(args, console),
+        Command::Polarization(args) => polarization::run(args, console),
         Command::Report(args) => report::run(args, console),
         Command::MergeManifests(args) => merge_manifests::run(args, console),
         Command::Verify(args) => verify::run(args, console),
