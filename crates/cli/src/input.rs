@@ -8,9 +8,9 @@ use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_disk as disk;
 use occlabel_logs::{
-    Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions, PointColumns,
-    QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource,
-    WaymoLog,
+    Argoverse2Log, Kitti360Log, Masks, McapLog, McapOptions, NuScenesLog, NuScenesOptions,
+    PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog,
+    TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{
     Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
@@ -21,6 +21,7 @@ use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
 use crate::format_flags::check_flags;
 use crate::format_hint::{check_input, with_format};
+use crate::masks::open_masks;
 use crate::presets::unknown_preset;
 use crate::urls::check_url;
 
@@ -34,6 +35,8 @@ pub(crate) struct Opened {
     /// BLAKE3 of the taxonomy's file.
     pub(crate) taxonomy_hash: String,
     pub(crate) rules: Rules,
+    /// The masks that paint; none if there are none.
+    pub(crate) masks: Option<Masks>,
     /// Whether the configuration names the lidar that keyframes refer to.
     pub(crate) names_lidar: bool,
 }
@@ -69,17 +72,15 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let stop = |fault| usage_or_failed(with_format(fault, log));
     let autos = autos(log, scenes.as_ref(), &mut config.reader).map_err(stop)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
+    let unknown_as = unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class);
+    let masks = open_masks(&log.input, &mut config.paint, &taxonomy, unknown_as);
+    let masks = masks.map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
-    let options = ReadOptions {
-        scenes,
-        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class),
-        taxonomy,
-        keyframes: config.keyframes.clone(),
-    };
+    let options = ReadOptions { scenes, unknown_as, taxonomy, keyframes: config.keyframes.clone() };
     let mcap = config.reader.mcap.clone();
     let source = open_format(log, options, mcap).map_err(stop)?;
-    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, names_lidar })
+    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, masks, names_lidar })
 }
 
 /// Opens a log by its format.
@@ -246,11 +247,11 @@ pub(crate) fn taxonomy_of(file: &str) -> Result<(Taxonomy, String), Fault> {
 }
 
 /// A path without its folders, which would tell of the machine.
-fn file_name(file: &str) -> String {
+pub(crate) fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or(file.into(), |name| name.to_string_lossy().into_owned())
 }
 
-fn read_text(path: &Path) -> Result<String, Fault> {
+pub(crate) fn read_text(path: &Path) -> Result<String, Fault> {
     disk::read_to_string(path).map_err(|error| {
         Fault::new(
             "config-file",

@@ -5,8 +5,8 @@ use std::path::Path;
 use occlabel_core::{Fault, Taxonomy};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{
-    Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_mcap,
-    write_nuscenes, write_semantickitti, write_waymo,
+    Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_masks,
+    write_mcap, write_nuscenes, write_semantickitti, write_waymo,
 };
 
 use crate::args::{Format, ImagesArg, SimulateArgs, WrittenFormat};
@@ -23,6 +23,10 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
     let output = Output::create(&args.output).map_err(usage_or_failed)?;
     write_truth(&worlds, &output)?;
     let (written, last) = write(args, &drives, &taxonomy, &output).map_err(usage_or_failed)?;
+    // nuScenes' own writer has them beside its images.
+    if args.masks && args.format != WrittenFormat::Nuscenes {
+        drives.iter().try_for_each(|drive| write_masks(drive, images(args), &output).map(drop))?;
+    }
     let size = output.finish(&last)?;
     tell(&written, size, console);
     console.result(&format!("label it with  {}", label_line(args, &worlds[0].1)));
@@ -95,6 +99,14 @@ fn write_truth(worlds: &[(String, World)], output: &Output) -> Result<(), Fault>
     }
 }
 
+fn images(args: &SimulateArgs) -> Images {
+    match args.images {
+        ImagesArg::None => Images::None,
+        ImagesArg::Keyframes => Images::Keyframes,
+        ImagesArg::All => Images::All,
+    }
+}
+
 /// Writes the log, and tells the entry to finish it with.
 fn write(
     args: &SimulateArgs,
@@ -102,11 +114,7 @@ fn write(
     taxonomy: &Taxonomy,
     output: &Output,
 ) -> Result<(Written, String), Fault> {
-    let images = match args.images {
-        ImagesArg::None => Images::None,
-        ImagesArg::Keyframes => Images::Keyframes,
-        ImagesArg::All => Images::All,
-    };
+    let images = images(args);
     match args.format {
         WrittenFormat::Nuscenes => write_nuscenes(drives, taxonomy, images, output)
             .map(|(written, last)| (written, last.to_owned())),

@@ -2,7 +2,7 @@
 
 use nalgebra::Point3;
 
-use crate::{Box3, Bundles, ClassId, PointCloud, Timestamp, TrackId};
+use crate::{Box3, Brush, Bundles, ClassId, PointCloud, Timestamp, TrackId};
 
 /// A scene's points: what stands in the world, and what moves with a track.
 ///
@@ -28,6 +28,8 @@ pub struct BackgroundSweep<L> {
     pub cloud: PointCloud<L>,
     /// Boxes around neighbouring points.
     pub bundles: Bundles,
+    /// What masks say of each point; empty if they say nothing of any.
+    pub brushes: Vec<Brush>,
 }
 
 impl<L> BackgroundSweep<L> {
@@ -35,7 +37,7 @@ impl<L> BackgroundSweep<L> {
     /// faster they are worked on.
     pub fn new(time: Timestamp, cloud: PointCloud<L>) -> Self {
         let bundles = Bundles::of(&cloud);
-        Self { time, cloud, bundles }
+        Self { time, cloud, bundles, brushes: Vec::new() }
     }
 }
 
@@ -91,6 +93,8 @@ impl std::ops::AddAssign for DropCounts {
 pub struct ClassCounts {
     /// The log's own point labels.
     pub labels: u64,
+    /// The pixels of masks that they fall on.
+    pub masks: u64,
     /// The track in whose box they are.
     pub boxes: u64,
     /// The vote of labelled neighbours.
@@ -102,6 +106,7 @@ pub struct ClassCounts {
 impl std::ops::AddAssign for ClassCounts {
     fn add_assign(&mut self, other: Self) {
         self.labels += other.labels;
+        self.masks += other.masks;
         self.boxes += other.boxes;
         self.neighbours += other.neighbours;
         self.unknown += other.unknown;

@@ -88,6 +88,9 @@ pub struct Scene {
     pub cameras: Vec<NamedCamera>,
     /// Keyframes in order of time.
     pub keyframes: Vec<Keyframe>,
+    /// Of each camera everything that it saw, in order of time, between keyframes too. What cannot be
+    /// used is left out.
+    pub exposures: Vec<Vec<Exposure>>,
     /// What is odd but can be lived with.
     pub warnings: Vec<Fault>,
     /// Records that were refused and left out.

@@ -30,6 +30,7 @@ mod inventory;
 mod keyframes;
 mod kitti360;
 mod kitti_labels;
+mod masks;
 mod mcap;
 #[cfg(test)]
 mod mutation_tests;
@@ -54,6 +55,7 @@ pub use formats::looks_like;
 pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
+pub use masks::{MaskFile, Masks, SceneMasks};
 pub use mcap::{McapLog, McapOptions, TimeSource};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
 pub use options::{ReadOptions, unknown_hint, without_stand_in};

@@ -8,7 +8,7 @@ use occlabel_core::{
 };
 use rayon::prelude::*;
 
-use crate::{Rules, Stage};
+use crate::{MaskedExposures, Rules, Stage, paint_scene};
 
 /// Reads, sorts, sums and relabels the sweeps of a scene. Parallel over sweeps, then over points.
 ///
@@ -21,12 +21,27 @@ pub fn aggregate_scene<E: Send>(
     scene: &Scene,
     rules: &Rules,
     read: impl Fn(&SweepHeader) -> Result<Option<PointCloud<PointLabel>>, E> + Sync,
+    enter: impl FnMut(Stage),
+) -> Result<AggregatedScene<ClassId>, E> {
+    aggregate_painted_scene(scene, rules, read, &MaskedExposures::none(), enter)
+}
+
+/// The same for a scene whose cameras have masks: its points are painted before they are relabelled.
+///
+/// # Errors
+/// The first error of `read`, in the order of sweeps, else that of reading a mask.
+pub fn aggregate_painted_scene<E: Send>(
+    scene: &Scene,
+    rules: &Rules,
+    read: impl Fn(&SweepHeader) -> Result<Option<PointCloud<PointLabel>>, E> + Sync,
+    masks: &MaskedExposures<E>,
     mut enter: impl FnMut(Stage),
 ) -> Result<AggregatedScene<ClassId>, E> {
     enter(Stage::Aggregate);
     let accumulated = sort_scene(scene, rules, read)?;
     enter(Stage::Relabel);
-    Ok(relabel(accumulated, &rules.relabel(scene)))
+    let painted = paint_scene(scene, accumulated, rules, masks)?;
+    Ok(relabel(painted, &rules.relabel(scene)))
 }
 
 /// Reads, sorts and sums the sweeps of a scene; labels are as logged. Parallel over sweeps.
@@ -60,7 +75,7 @@ pub(crate) fn standing_boxes(tracks: &[BoxTrack], time: Timestamp, rules: &Rules
         .collect()
 }
 
-fn track_boxes(
+pub(crate) fn track_boxes(
     tracks: &[BoxTrack],
     time: Timestamp,
     settings: &BoxSettings,

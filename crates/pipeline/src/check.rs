@@ -8,6 +8,9 @@ use crate::config::EgoBox;
 /// Rays longer than this many voxels are refused (labels.md section 8).
 const LONGEST_RAY_VOXELS: f64 = (1 << 20) as f64;
 
+/// More pixels to each side are whole images.
+const MOST_PX: u32 = 1000;
+
 /// Refuses a configuration with an impossible value.
 pub(crate) fn check(config: &Config) -> Result<(), Fault> {
     config.grid_spec()?;
@@ -15,6 +18,8 @@ pub(crate) fn check(config: &Config) -> Result<(), Fault> {
     check_spans(config)?;
     check_distances(config)?;
     check_ego_box(&config.aggregate.ego_box_m)?;
+    check_pixels("paint.borders_px", config.paint.borders_px)?;
+    check_pixels("paint.splat_px", config.paint.splat_px)?;
     check_mcap(&config.reader.mcap)?;
     check_reach(config)
 }
@@ -30,6 +35,7 @@ fn check_counts(config: &Config) -> Result<(), Fault> {
 fn check_spans(config: &Config) -> Result<(), Fault> {
     not_negative("boxes.max_gap_s", config.boxes.max_gap_s)?;
     not_negative("boxes.extrapolate_s", config.boxes.extrapolate_s)?;
+    not_negative("paint.max_dt_s", config.paint.max_dt_s)?;
     not_negative("aggregate.window_s", config.aggregate.window_s)?;
     not_negative("aggregate.deformable_window_s", config.aggregate.deformable_window_s)?;
     not_negative("raycast.same_time_s", config.raycast.same_time_s)
@@ -40,12 +46,17 @@ fn check_distances(config: &Config) -> Result<(), Fault> {
     positive("aggregate.max_range_m", config.aggregate.max_range_m)?;
     positive("aggregate.box_scale", config.aggregate.box_scale)?;
     not_negative("aggregate.box_margin_m", config.aggregate.box_margin_m)?;
+    not_negative("paint.occlusion_m", config.paint.occlusion_m)?;
     not_negative("relabel.max_distance_m", config.relabel.max_distance_m.value().unwrap_or(0.0))?;
     not_negative("raycast.ignore_near_hit_m", config.raycast.ignore_near_hit_m)?;
     not_negative("raycast.ignore_near_origin_m", config.raycast.ignore_near_origin_m)?;
     not_negative("raycast.flat_ignore_dz_m", config.raycast.flat_ignore_dz_m)?;
     positive("occlusion.depth_max_m", config.occlusion.depth_max_m)?;
     need("states.min_hit_ratio", (0.0..=1.0).contains(&ratio), "0 to 1", ratio)
+}
+
+fn check_pixels(key: &str, pixels: u32) -> Result<(), Fault> {
+    need(key, pixels <= MOST_PX, &format!("at most {MOST_PX}"), pixels)
 }
 
 fn check_ego_box(ego_box: &EgoBox) -> Result<(), Fault> {
@@ -104,6 +115,10 @@ mod tests {
         for setting in [
             "keyframes.stride=0",
             "relabel.k=0",
+            "paint.max_dt_s=-0.1",
+            "paint.occlusion_m=nan",
+            "paint.splat_px=1001",
+            "paint.borders_px=1001",
             "occlusion.pixel_stride=0",
             "states.occupied_min_hits=0",
             "boxes.max_gap_s=-1",

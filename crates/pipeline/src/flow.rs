@@ -13,7 +13,7 @@ type Motion = Option<(Pose, f64)>;
 /// Velocity of each voxel's centre with its track, grid frame, metres per second.
 ///
 /// 0 where nothing is, or nothing that a track vouches for; NaN where the track's next annotation is
-/// missing or farther away than `max_gap_s`. Both boxes stand in the keyframe's own grid, so the
+/// missing or farther away than `max_gap_s`, and of instances that have no box. Both boxes stand in the keyframe's own grid, so the
 /// ego's motion is not in it.
 pub(crate) fn flow(
     scene: &Scene,
@@ -29,7 +29,9 @@ pub(crate) fn flow(
     occupied.map(|vote| {
         let at = flat.next().expect("one voxel per vote");
         let track = vote.as_ref().and_then(|vote| vote.instance);
-        track.map_or([0.0; 3], |track| velocity(motions[&track].as_ref(), spec, at))
+        // An instance that masks alone tell of has no box to move with.
+        let motion = |track| motions.get(&track).and_then(Option::as_ref);
+        track.map_or([0.0; 3], |track| velocity(motion(track), spec, at))
     })
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Point3;
 use occlabel_aggregate::{SplitSettings, WindowSettings};
-use occlabel_annotate::{BoxSettings, GhostClasses, RelabelSettings};
+use occlabel_annotate::{BoxSettings, GhostClasses, PaintSettings, RelabelSettings};
 use occlabel_core::{BoxGrowth, ClassId, Fault, GridSpec, Pose, Scene, SweepHeader, Taxonomy};
 use occlabel_occlusion::OcclusionSettings;
 use occlabel_raycast::{RayRules, RaySettings, StateSettings};
@@ -28,6 +28,8 @@ pub struct Rules {
     pub split: SplitSettings,
     /// Section 4, once per keyframe.
     pub window: WindowSettings,
+    /// Section 5, from masks; `None` if there are none.
+    pub paint: Option<PaintSettings>,
     /// Section 9.
     pub states: StateSettings,
     /// Section 10.
@@ -61,6 +63,7 @@ impl Rules {
                 deformable: taxonomy.deformable,
                 growth,
             },
+            paint: config.paint.settings(),
             states: config.states,
             occlusion: config.occlusion,
             relabel: config.relabel.clone(),
@@ -100,12 +103,12 @@ impl Rules {
         }
     }
 
-    /// Refuses a scene that would come out empty: no point label, and no class for such points.
+    /// Refuses a scene that would come out empty: no point label, no mask, and no class for such points.
     ///
     /// # Errors
     /// If so, with what to set.
     pub fn check_labels(&self, scene: &Scene) -> Result<(), Fault> {
-        if scene.has_point_labels() || self.unknown.is_some() {
+        if scene.has_point_labels() || self.paint.is_some() || self.unknown.is_some() {
             return Ok(());
         }
         Err(Fault::new(

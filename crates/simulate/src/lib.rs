@@ -109,5 +109,6 @@ pub use world::World;
 #[cfg(feature = "waymo-v2")]
 pub use write::write_waymo_v2;
 pub use write::{
-    Images, Output, Written, write_mcap, write_nuscenes, write_semantickitti, write_waymo,
+    Images, Output, Written, write_masks, write_mcap, write_nuscenes, write_semantickitti,
+    write_waymo,
 };

@@ -6,7 +6,7 @@ use std::path::Path;
 use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
 use occlabel_dialects::KeyframeInfo;
 use occlabel_disk as disk;
-use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
+use occlabel_labels::{InputRecord, PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::{Cost, MemoryModel, SceneWork};
 use occlabel_simulate::World;
@@ -28,6 +28,8 @@ pub(crate) struct PlannedScene {
     pub(crate) wanted: BTreeSet<String>,
     /// Files of its sweeps, relative to the log's root, with their sizes.
     pub(crate) files: Vec<(String, u64)>,
+    /// The masks that paint its points.
+    pub(crate) masks: Vec<InputRecord>,
     /// How many keyframes at once, and in how many shards of rays each.
     pub(crate) at_once: (usize, usize),
     /// An upper estimate of the memory that takes.
@@ -72,6 +74,7 @@ impl PlannedScene {
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
+        let masks = masks(job, &scene, findings).map_err(|fault| Refused::Broken(vec![fault]))?;
         let points = job.opened.source.scene_points(&scene);
         let model = memory_model(job, &scene, points);
         let at_once = fit(job, &scene, &model)?;
@@ -84,6 +87,7 @@ impl PlannedScene {
             at_once,
             memory_bytes: model.bytes(at_once.0, at_once.1),
             files: inventory.present,
+            masks,
             sweeps: scene.sweeps.len(),
             told: told_by(&scene),
             points,
@@ -144,6 +148,24 @@ fn warn_of(job: &Job, scene: &Scene, findings: &mut Findings) {
     let odd = check_poses(scene, None);
     let faults = scene.warnings.iter().chain(&lacks).chain(&odd);
     faults.for_each(|fault| findings.warn(job.console, &scene.name, fault));
+}
+
+/// The masks of a scene. If masks are asked for, and it has none, that is told.
+fn masks(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<Vec<InputRecord>, Fault> {
+    let Some(masks) = &job.opened.masks else { return Ok(Vec::new()) };
+    let record = |file: &String| {
+        let record = InputRecord::of_sweep(masks.folder(), file)?.of_scene(&scene.name);
+        Ok(InputRecord { path: format!("{}/{file}", job.opened.config.paint.masks), ..record })
+    };
+    let found = masks.of_scene(scene)?;
+    let records: Vec<_> = found.files().map(record).collect::<Result<_, Fault>>()?;
+    if records.is_empty() {
+        let place = masks.folder().display().to_string();
+        let expected = "masks of the scene's exposures";
+        let fault = Fault::new("no-masks", place, expected, "none: nothing is painted");
+        findings.warn(job.console, &scene.name, &fault);
+    }
+    Ok(records)
 }
 
 fn refused_load(job: &Job, fault: Fault) -> Refused {

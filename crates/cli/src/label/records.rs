@@ -27,7 +27,8 @@ pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
         };
         scene.files.iter().map(record)
     });
-    let inputs = tables.chain(sweeps).collect::<Result<Vec<_>, Fault>>()?;
+    let masks = plan.scenes.iter().flat_map(|scene| scene.masks.iter().cloned().map(Ok));
+    let inputs = tables.chain(sweeps).chain(masks).collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config_json(&job.opened.config), inputs))
 }
 

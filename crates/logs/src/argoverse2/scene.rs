@@ -66,7 +66,7 @@ pub(super) fn build_scene(
     let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &exposures, &notes)?;
     let (warnings, refused) = notes.finish();
     let name = name.to_owned();
-    Ok(Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused })
+    Ok(Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused })
 }
 
 /// Poses by time; one that is none is left out and noted.

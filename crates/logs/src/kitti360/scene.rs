@@ -60,7 +60,8 @@ impl Loaded {
             keyframes(&options.keyframes, name, &sweeps, |_| false, &exposures, &notes)?;
         let (warnings, refused) = notes.finish();
         let name = name.to_owned();
-        let scene = Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused };
+        let scene =
+            Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused };
         Ok(Self { scene, motions, windows })
     }
 }

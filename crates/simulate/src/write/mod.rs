@@ -5,6 +5,7 @@
 
 mod exposures;
 mod files;
+mod masks;
 mod mcap;
 mod nuscenes;
 mod png;
@@ -16,6 +17,7 @@ mod wire;
 mod written;
 
 pub use files::Output;
+pub use masks::write_masks;
 pub use mcap::write_mcap;
 pub use nuscenes::write_nuscenes;
 pub use semantickitti::write_semantickitti;
