@@ -3,6 +3,7 @@
 //! Each writes what the drive's scene says, faults of its annotator included, and nothing that a
 //! real log would not hold. All files go through [`Output`]: a log that looks whole is whole.
 
+mod cloud;
 mod exposures;
 mod files;
 mod mcap;
@@ -15,6 +16,7 @@ mod waymo;
 mod wire;
 mod written;
 
+pub use cloud::write_cloud;
 pub use files::Output;
 pub use mcap::write_mcap;
 pub use nuscenes::write_nuscenes;
