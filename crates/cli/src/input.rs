@@ -8,14 +8,15 @@ use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_disk as disk;
 use occlabel_logs::{
-    Argoverse2Log, Kitti360Log, Masks, McapLog, McapOptions, NuScenesLog, NuScenesOptions,
-    PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog,
-    TimeSource, WaymoLog,
+    Argoverse2Log, CloudLog, CloudOptions, Kitti360Log, Masks, McapLog, McapOptions, NuScenesLog,
+    NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource,
+    SemanticKittiLog, TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{
     Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
     shipped_taxonomy,
 };
+use occlabel_voxelize::Surfels;
 
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
@@ -78,8 +79,7 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
     let options = ReadOptions { scenes, unknown_as, taxonomy, keyframes: config.keyframes.clone() };
-    let mcap = config.reader.mcap.clone();
-    let source = open_format(log, options, mcap).map_err(stop)?;
+    let source = open_format(log, options, &config).map_err(stop)?;
     Ok(Opened { source, preset: None, config, taxonomy_hash, rules, masks, names_lidar })
 }
 
@@ -87,7 +87,7 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
 fn open_format(
     log: &LogArgs,
     read: ReadOptions,
-    mcap: McapSettings,
+    config: &Config,
 ) -> Result<Box<dyn SceneSource>, Fault> {
     match log.format {
         Format::Nuscenes => {
@@ -103,8 +103,12 @@ fn open_format(
             SemanticKittiLog::open(&log.input, read).map(|log| Box::new(log) as _)
         }
         Format::Mcap => {
-            let options = mcap_options(log, read, mcap);
+            let options = mcap_options(log, read, config.reader.mcap.clone());
             McapLog::open(&log.input, options).map(|log| Box::new(log) as _)
+        }
+        Format::Cloud => {
+            let options = cloud_options(read, config)?;
+            CloudLog::open(&log.input, options).map(|log| Box::new(log) as _)
         }
     }
 }
@@ -122,6 +126,10 @@ fn autos(
         Format::Waymo => WaymoLog::format_defaults(&log.input)?,
         Format::Av2 => Argoverse2Log::format_defaults(),
         Format::Semantickitti => SemanticKittiLog::format_defaults(),
+        Format::Cloud => {
+            tables.cloud = given.cloud;
+            CloudLog::format_defaults()
+        }
         Format::Mcap => {
             let (defaults, mut mcap) = McapLog::resolve(&log.input, scenes, &given.mcap)?;
             let taxonomy = std::mem::replace(&mut mcap.taxonomy, file_name(&given.mcap.taxonomy));
@@ -156,6 +164,15 @@ fn mcap_options(log: &LogArgs, read: ReadOptions, settings: McapSettings) -> Mca
     McapOptions { read, settings, time_source, recover: log.recover }
 }
 
+/// Surfels become points so near to each other that at least two of them fit beside each other into each
+/// voxel of the configured grid.
+fn cloud_options(read: ReadOptions, config: &Config) -> Result<CloudOptions, Fault> {
+    let is_spread = config.voxelize.surfels == Surfels::Extent;
+    let smallest_m = config.grid_spec()?.size_m().min();
+    let surfel_spacing_m = is_spread.then_some(smallest_m / 2.0);
+    Ok(CloudOptions { read, settings: config.reader.cloud.clone(), surfel_spacing_m })
+}
+
 /// What the user named wrongly is a matter of usage; what the log holds wrongly is not.
 fn usage_or_failed(fault: Fault) -> Stop {
     match fault.rule {
@@ -167,6 +184,7 @@ fn usage_or_failed(fault: Fault) -> Stop {
         | "av2-layout"
         | "semantickitti-layout"
         | "mcap-files"
+        | "cloud-layout"
         | "mcap-clouds" => Stop::usage(fault),
         _ => fault.into(),
     }

@@ -5,8 +5,8 @@ use std::path::Path;
 use occlabel_core::{Fault, Taxonomy};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{
-    Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_masks,
-    write_mcap, write_nuscenes, write_semantickitti, write_waymo,
+    Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_cloud,
+    write_masks, write_mcap, write_nuscenes, write_semantickitti, write_waymo,
 };
 
 use crate::args::{Format, ImagesArg, SimulateArgs, WrittenFormat};
@@ -121,6 +121,7 @@ fn write(
         WrittenFormat::Semantickitti => write_semantickitti(&drives[0], output)
             .map(|(written, last)| (written, last.to_owned())),
         WrittenFormat::Mcap => write_mcap(&drives[0], taxonomy, images, output),
+        WrittenFormat::Cloud => write_cloud(&drives[0], taxonomy, output),
         WrittenFormat::Waymo => write_waymo(&drives[0], output),
         #[cfg(feature = "waymo-v2")]
         WrittenFormat::WaymoV2 => occlabel_simulate::write_waymo_v2(&drives[0], output),
@@ -152,11 +153,16 @@ fn tell(written: &Written, (files, bytes): (usize, u64), console: &Console) {
 /// nuScenes' taxonomy; the others have words of their own.
 fn label_line(args: &SimulateArgs, world: &World) -> String {
     let input = Path::new(&args.output).display();
+    if args.format == WrittenFormat::Cloud {
+        let line = "occlabel label --format cloud --preset gs-occ3d";
+        return format!("{line} --input {input} --output LABELS");
+    }
     let (format, has_own_names) = match args.format {
         WrittenFormat::Nuscenes => (Format::Nuscenes, true),
         WrittenFormat::Mcap => (Format::Mcap, true),
         WrittenFormat::Semantickitti => (Format::Semantickitti, false),
         WrittenFormat::Waymo | WrittenFormat::WaymoV2 => (Format::Waymo, false),
+        WrittenFormat::Cloud => (Format::Cloud, false),
     };
     let format = name(format);
     let line = format!("occlabel label --format {format} --input {input} --output LABELS");

@@ -22,8 +22,8 @@ pub struct AggregatedScene<L> {
 /// The background points of one sweep. World coordinates.
 #[derive(Clone, Debug)]
 pub struct BackgroundSweep<L> {
-    /// The sweep's time.
-    pub time: Timestamp,
+    /// The sweep's time; none if its points are of no time and serve every keyframe.
+    pub time: Option<Timestamp>,
     /// Its points.
     pub cloud: PointCloud<L>,
     /// Boxes around neighbouring points.
@@ -35,9 +35,9 @@ pub struct BackgroundSweep<L> {
 impl<L> BackgroundSweep<L> {
     /// A sweep of points in world coordinates. The more neighbours stand beside each other, the
     /// faster they are worked on.
-    pub fn new(time: Timestamp, cloud: PointCloud<L>) -> Self {
+    pub fn new(time: impl Into<Option<Timestamp>>, cloud: PointCloud<L>) -> Self {
         let bundles = Bundles::of(&cloud);
-        Self { time, cloud, bundles, brushes: Vec::new() }
+        Self { time: time.into(), cloud, bundles, brushes: Vec::new() }
     }
 }
 
@@ -46,9 +46,9 @@ impl<L> BackgroundSweep<L> {
 pub struct ObjectSweep {
     /// Whose points these are.
     pub track: TrackId,
-    /// The sweep's time.
-    pub time: Timestamp,
-    /// The box at that time, as annotated, interpolated or extrapolated.
+    /// The sweep's time; none if its points are of no time and serve every keyframe.
+    pub time: Option<Timestamp>,
+    /// The box at that time, as annotated, interpolated or extrapolated; the first one if there is none.
     pub boxed: Box3,
     /// The points, each labelled with the track's class.
     pub cloud: PointCloud<ClassId>,

@@ -25,6 +25,7 @@ mod bundles;
 pub mod camera;
 mod class;
 mod cloud;
+mod cloud_settings;
 mod exposure;
 mod fault;
 mod grid;
@@ -52,6 +53,7 @@ pub use bundles::{BUNDLE, Bundles, Reach};
 pub use camera::Camera;
 pub use class::{ClassId, ClassSet};
 pub use cloud::{PointCloud, PointLabel, is_finite};
+pub use cloud_settings::{CloudSettings, OpacityScale, SizeScale};
 pub use exposure::{EXPOSURE_WITHIN_S, nearest_exposure, nearest_exposure_within};
 pub use fault::{Fault, printable};
 pub use grid::{FAR_LANE, GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};
@@ -64,7 +66,8 @@ pub use occupancy::{Evidence, OccupancyLabels, RayCounts, VoxelState, VoxelVote}
 pub use palette::{ColorSet, Palette};
 pub use pose::{Pose, RigidMap, slerp};
 pub use scene::{
-    Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, Refusal, Scene, Sweep, SweepHeader,
+    Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, PointsOf, Refusal, Scene, Sweep,
+    SweepHeader,
 };
 pub use simd::{Kernel, Level};
 pub use taxonomy::{Meaning, Taxonomy, TaxonomyError};

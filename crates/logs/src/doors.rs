@@ -16,7 +16,7 @@ use crate::raw_labels::RawLabels;
 use crate::semantickitti::{label_name, line_of_pose, line_of_time};
 use crate::waymo::compressed;
 use crate::{
-    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, kitti360, mcap, nuscenes,
+    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, cloud, kitti360, mcap, nuscenes,
     semantickitti,
 };
 
@@ -46,6 +46,7 @@ pub const DOORS: &[Door] = &[
         knock: semantickitti::doors::sequence,
         seeds: semantickitti::doors::files,
     },
+    Door { name: "cloud", knock: cloud::doors::scene, seeds: cloud::doors::files },
     #[cfg(feature = "av2")]
     Door {
         name: "argoverse2",

@@ -21,6 +21,7 @@
 
 mod argoverse2;
 mod check;
+mod cloud;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
 mod files;
@@ -51,6 +52,7 @@ mod wire;
 
 pub use argoverse2::Argoverse2Log;
 pub use check::{Finding, SceneSurvey, Severity, SweepSurvey, UnknownSum, check_poses};
+pub use cloud::{CloudLog, CloudOptions};
 pub use formats::looks_like;
 pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};

@@ -1,10 +1,10 @@
 //! Once per scene: every sweep sorted, every point labelled.
 
-use occlabel_aggregate::{TrackBox, accumulate, split_sweep};
+use occlabel_aggregate::{SplitSweep, TrackBox, accumulate, keep_timeless, split_sweep};
 use occlabel_annotate::{BoxSettings, BoxSource, box_at, relabel};
 use occlabel_core::{
-    AggregatedScene, BoxTrack, ClassId, PointCloud, PointLabel, Scene, Sweep, SweepHeader,
-    Timestamp,
+    AggregatedScene, BoxTrack, ClassId, PointCloud, PointLabel, PointsOf, Scene, Sweep,
+    SweepHeader, Timestamp,
 };
 use rayon::prelude::*;
 
@@ -54,12 +54,22 @@ pub fn sort_scene<E: Send>(
     read: impl Fn(&SweepHeader) -> Result<Option<PointCloud<PointLabel>>, E> + Sync,
 ) -> Result<AggregatedScene<Option<ClassId>>, E> {
     let split_one = |header| -> Result<_, E> {
-        let boxes: Vec<_> = boxes_at(&scene.tracks, header, rules);
-        Ok(read(header)?.map(|cloud| split_sweep(&Sweep { header, cloud }, &boxes, &rules.split)))
+        Ok(read(header)?.map(|cloud| split_one(scene, rules, &Sweep { header, cloud })))
     };
     let sorted: Vec<_> = scene.sweeps.par_iter().map(split_one).collect();
     let sorted = sorted.into_iter().collect::<Result<Vec<_>, E>>()?;
     Ok(accumulate(sorted.into_iter().flatten()))
+}
+
+fn split_one(scene: &Scene, rules: &Rules, sweep: &Sweep) -> SplitSweep {
+    let header = sweep.header;
+    match header.points_of {
+        PointsOf::Moment | PointsOf::Nothing => {
+            split_sweep(sweep, &boxes_at(&scene.tracks, header, rules), &rules.split)
+        }
+        PointsOf::World => keep_timeless(sweep, None),
+        PointsOf::Track(id) => keep_timeless(sweep, Some(&scene.tracks[usize::from(id.0) - 1])),
+    }
 }
 
 /// The boxes that sort a sweep's points, extrapolated ones included.

@@ -1,6 +1,6 @@
 //! What a configuration may say: checked once, at the door.
 
-use occlabel_core::{Fault, McapSettings};
+use occlabel_core::{CloudSettings, Fault, McapSettings};
 
 use crate::Config;
 use crate::config::EgoBox;
@@ -20,6 +20,7 @@ pub(crate) fn check(config: &Config) -> Result<(), Fault> {
     check_ego_box(&config.aggregate.ego_box_m)?;
     check_pixels("paint.borders_px", config.paint.borders_px)?;
     check_pixels("paint.splat_px", config.paint.splat_px)?;
+    check_cloud(&config.reader.cloud)?;
     check_mcap(&config.reader.mcap)?;
     check_reach(config)
 }
@@ -44,6 +45,7 @@ fn check_spans(config: &Config) -> Result<(), Fault> {
 fn check_distances(config: &Config) -> Result<(), Fault> {
     let ratio = config.states.min_hit_ratio;
     positive("aggregate.max_range_m", config.aggregate.max_range_m)?;
+    not_negative("aggregate.radius_m", config.aggregate.radius_m.value().unwrap_or(0.0))?;
     positive("aggregate.box_scale", config.aggregate.box_scale)?;
     not_negative("aggregate.box_margin_m", config.aggregate.box_margin_m)?;
     not_negative("paint.occlusion_m", config.paint.occlusion_m)?;
@@ -63,6 +65,12 @@ fn check_ego_box(ego_box: &EgoBox) -> Result<(), Fault> {
     let EgoBox::Corners { min, max } = ego_box else { return Ok(()) };
     let is_box = (0..3).all(|a| min[a].is_finite() && max[a].is_finite() && min[a] <= max[a]);
     need("aggregate.ego_box_m", is_box, "finite corners, min <= max", format!("{min:?} {max:?}"))
+}
+
+fn check_cloud(settings: &CloudSettings) -> Result<(), Fault> {
+    let opacity = settings.min_opacity;
+    let is_share = opacity > 0.0 && opacity <= 1.0;
+    need("reader.cloud.min_opacity", is_share, "above 0, at most 1", opacity)
 }
 
 fn check_mcap(settings: &McapSettings) -> Result<(), Fault> {
@@ -124,6 +132,8 @@ mod tests {
             "boxes.max_gap_s=-1",
             "aggregate.window_s=nan",
             "aggregate.max_range_m=0",
+            "aggregate.radius_m=-1",
+            "reader.cloud.min_opacity=0",
             "aggregate.box_scale=-1.0",
             "raycast.same_time_s=inf",
             "states.min_hit_ratio=1.5",

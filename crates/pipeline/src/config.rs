@@ -1,7 +1,9 @@
 //! The configuration: every key of labels.md section 14, under its name there.
 
 use occlabel_annotate::{BoxSettings, GhostClasses, PaintSettings};
-use occlabel_core::{Fault, GridSpec, KeyframeSettings, MaskClasses, McapSettings, Taxonomy};
+use occlabel_core::{
+    CloudSettings, Fault, GridSpec, KeyframeSettings, MaskClasses, McapSettings, Taxonomy,
+};
 use occlabel_occlusion::OcclusionSettings;
 use occlabel_raycast::{RaySettings, StateSettings};
 use occlabel_voxelize::VoteSettings;
@@ -44,6 +46,8 @@ pub struct Config {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReaderTables {
+    /// Clouds of reconstructions.
+    pub cloud: CloudSettings,
     /// MCAP logs.
     pub mcap: McapSettings,
 }
@@ -105,6 +109,8 @@ pub struct AggregateTable {
     pub window_s: f64,
     /// The same for tracks whose shape changes, seconds.
     pub deformable_window_s: f64,
+    /// Background points farther from a keyframe's pose do not serve it, metres, or `"none"`.
+    pub radius_m: Limit,
 }
 
 /// The ego vehicle's body: `"auto"`, `"none"`, or `{ min, max }` in the ego frame, metres.

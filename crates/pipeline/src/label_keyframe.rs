@@ -7,7 +7,9 @@ use occlabel_core::{
     VoxelGrid, VoxelState, VoxelVote,
 };
 use occlabel_occlusion::{Eye, Lenses, matter, visible};
-use occlabel_raycast::{Casting, Crossings, StateSettings, classify, count};
+use occlabel_raycast::{
+    Casting, Crossings, RaySource, StateSettings, classify, count, count_hits, seen,
+};
 use occlabel_voxelize::voxelize;
 
 use crate::Rules;
@@ -86,7 +88,11 @@ pub fn label_keyframe(
     let votes = voxelize(&instant, spec, &rules.votes());
 
     enter(Stage::Raycast);
-    let counts = count(&instant, spec, &rules.rays(), &options.casting(&rules.states));
+    let source = rules.rays().settings.source;
+    let counts = match source {
+        RaySource::Lidar => count(&instant, spec, &rules.rays(), &options.casting(&rules.states)),
+        RaySource::Camera => count_hits(&instant, spec),
+    };
     let states = classify(&counts, &votes, ground, &rules.states);
     let occupied = occupied_votes(votes, &states);
     // Taken either way: the counts of a fine grid are not held while cameras look.
@@ -96,6 +102,11 @@ pub fn label_keyframe(
     let eyes = open_eyes(scene, keyframe, &moment.grid_from_world);
     let camera_bits =
         visible(&eyes, lenses, spec, &matter(&states, &occupied, ground), &rules.occlusion);
+    let states = match source {
+        RaySource::Lidar => states,
+        RaySource::Camera => seen(&states, &camera_bits),
+    };
+    let occupied = occupied_votes(occupied, &states);
 
     enter(Stage::Finish);
     let mut labels = arrays(rules.taxonomy.free, states, &occupied, &camera_bits);
@@ -116,7 +127,8 @@ pub(crate) fn moment<'a>(
     let reference = scene.reference_sweep(keyframe);
     let grid_from_world = rules.world_from_grid(reference).inverse();
     let reference_lidar = grid_from_world * reference.world_from_lidar() * Point3::origin();
-    Moment { time: keyframe.time, grid_from_world, reference_lidar, standing }
+    let ego = reference.world_from_ego * Point3::origin();
+    Moment { time: keyframe.time, grid_from_world, ego, reference_lidar, standing }
 }
 
 pub(crate) fn open_eyes<'a>(

@@ -32,7 +32,7 @@ impl<E> MaskedExposures<'_, E> {
 }
 
 /// Paints the background of a scene, each sweep by the exposures nearest to it in time. Parallel over
-/// sweeps. Nothing happens without `[paint]`.
+/// sweeps. Nothing happens without `[paint]`, nor to points that are of no time.
 ///
 /// # Errors
 /// The first error of reading a mask, in the order of sweeps.
@@ -43,11 +43,12 @@ pub fn paint_scene<E: Send>(
     masks: &MaskedExposures<E>,
 ) -> Result<AggregatedScene<Option<ClassId>>, E> {
     let Some(settings) = &rules.paint else { return Ok(sorted) };
-    let mut objects: BTreeMap<Timestamp, Vec<&ObjectSweep>> = BTreeMap::new();
+    let mut objects: BTreeMap<Option<Timestamp>, Vec<&ObjectSweep>> = BTreeMap::new();
     sorted.objects.iter().for_each(|object| objects.entry(object.time).or_default().push(object));
     let paint_one = |sweep: BackgroundSweep<_>| {
+        let Some(time) = sweep.time else { return Ok(sweep) };
         let objects = objects.get(&sweep.time).map_or(&[][..], Vec::as_slice);
-        let seen = exposures_at(sweep.time, &masks.exposures, settings);
+        let seen = exposures_at(time, &masks.exposures, settings);
         let masks =
             seen.iter().map(|exposure| (masks.read)(exposure)).collect::<Result<Vec<_>, E>>()?;
         let masked =

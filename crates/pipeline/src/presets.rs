@@ -11,11 +11,13 @@ macro_rules! shipped {
 /// Presets by name, the default first.
 pub const PRESETS: &[(&str, &str)] = shipped!(
     "": "precise" "paper" "occ3d-nuscenes" "occ3d-waymo" "occ3d-waymo-text" "panommocc" "mobileocc"
+        "gs-occ3d"
 );
 
 /// Taxonomies by name.
 pub const TAXONOMIES: &[(&str, &str)] = shipped!(
     "taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc" "semantickitti" "argoverse2"
+        "occupancy"
 );
 
 /// What the pixels of masks mean in label sets that many segmenters speak, by name.

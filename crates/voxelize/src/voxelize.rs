@@ -1,5 +1,6 @@
 //! Class of a voxel (labels.md section 7).
 
+use std::borrow::Cow;
 use std::cmp::Reverse;
 
 use occlabel_core::{
@@ -16,6 +17,18 @@ use crate::ballot::{Ballot, BallotBox, TrackVote};
 pub struct VoteSettings {
     /// Which points compete.
     pub vote: Vote,
+    /// What a surfel of a reconstruction counts as.
+    pub surfels: Surfels,
+}
+
+/// What a surfel of a reconstruction counts as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Surfels {
+    /// A point at its centre.
+    Points,
+    /// Points all over the ellipse that it covers.
+    Extent,
 }
 
 /// Which points of a voxel compete for its class.
@@ -61,7 +74,7 @@ pub fn voxelize(
 fn cast_background(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
     let place = &RigidMap::from(&instant.grid_from_world);
     let reaches =
-        |sweep: &&&BackgroundSweep<ClassId>| sweep.bundles.whole_reach(spec, place).meets(spec);
+        |sweep: &&Cow<BackgroundSweep<ClassId>>| sweep.bundles.whole_reach(spec, place).meets(spec);
     for sweep in instant.background.iter().filter(reaches) {
         Level::best().run(CastSweep { sweep, place, spec, ballots });
     }
@@ -228,7 +241,7 @@ mod tests {
     fn object(&(class, track): &(u8, u16)) -> ObjectSweep {
         let boxed = Box3 { world_from_box: Pose::identity(), size_m: Vector3::repeat(2.0) };
         let cloud = cloud(vec![ClassId(class)]);
-        ObjectSweep { track: TrackId(track), time: Timestamp(0), boxed, cloud }
+        ObjectSweep { track: TrackId(track), time: Some(Timestamp(0)), boxed, cloud }
     }
 
     fn vote(held: &Held, vote: Vote) -> Option<VoxelVote> {

@@ -18,7 +18,7 @@ pub(crate) struct SimulateArgs {
     /// Set one key of the world file; any number of times. VALUE is TOML, or else a string.
     #[arg(long = "set", value_name = "key.path=VALUE")]
     pub(crate) settings: Vec<String>,
-    /// Which exposures become image files, with a mask of classes each (mcap: without; waymo: none).
+    /// Which exposures become image files, with a mask of classes each (mcap: without; waymo, cloud: none).
     #[arg(long, value_enum, default_value_t = ImagesArg::Keyframes)]
     pub(crate) images: ImagesArg,
     /// Write masks of classes and instances of these exposures into `masks`, whatever the format.
@@ -40,6 +40,8 @@ pub(crate) enum WrittenFormat {
     Waymo,
     /// Waymo Open Dataset, v2: Parquet components.
     WaymoV2,
+    /// What the cameras alone make of it: a cloud, without lidar and images.
+    Cloud,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

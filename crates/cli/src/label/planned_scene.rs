@@ -69,7 +69,7 @@ impl PlannedScene {
             let fault = Fault::new("no-keyframes", "the scene", "keyframes to label", "none");
             findings.warn(job.console, name, &fault);
         }
-        job.opened.rules.check_labels(&scene).map_err(Refused::Configuration)?;
+        job.opened.rules.check(&scene).map_err(Refused::Configuration)?;
         warn_of(job, &scene, findings);
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
@@ -249,8 +249,9 @@ fn work(job: &Job, scene: &Scene, points: u64, wanted: &BTreeSet<String>) -> Vec
 fn memory_model(job: &Job, scene: &Scene, points: u64) -> MemoryModel {
     let evidence = job.args.evidence || job.targets.need_evidence();
     let reading_bytes = disk::reading_bytes(&job.args.log.input, job.threads);
-    MemoryModel::new(points, job.targets.largest(), scene.cameras.len(), evidence)
-        .beside(reading_bytes)
+    let model = MemoryModel::new(points, job.targets.largest(), scene.cameras.len(), evidence)
+        .beside(reading_bytes);
+    if job.opened.rules.window.radius_m.is_some() { model.cutting() } else { model }
 }
 
 /// How many keyframes fit into memory at once: into `--memory`, else into what the machine has left.

@@ -312,8 +312,10 @@ fn boxes_without_points(scene: &Scene, aggregated: &AggregatedScene<ClassId>) ->
     let mut empty = Vec::new();
     for track in &scene.tracks {
         let times = track.boxes.iter().map(|(time, _)| *time);
-        let is_empty =
-            |time: &Timestamp| sweeps.contains(time) && !held.contains(&(track.id, *time));
+        let is_empty = |time: &Timestamp| {
+            sweeps.contains(time)
+                && ![None, Some(*time)].iter().any(|at| held.contains(&(track.id, *at)))
+        };
         empty.extend(
             times
                 .filter(is_empty)

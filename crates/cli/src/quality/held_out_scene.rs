@@ -68,7 +68,9 @@ impl HeldOutRun<'_> {
         let divided = self.divide(self.load(name)?)?;
         let mut heard = SceneTally { sweeps: divided.held.background.len(), ..Default::default() };
         for (at, keyframe) in divided.scene.keyframes.iter().enumerate() {
-            if divided.held.background.iter().any(|sweep| self.asks(&divided, sweep.time, at)) {
+            if (divided.held.background.iter())
+                .any(|sweep| sweep.time.is_some_and(|time| self.asks(&divided, time, at)))
+            {
                 heard.keyframes += 1;
                 heard.tally += &self.ask_keyframe(&divided, at, keyframe);
             }
@@ -95,7 +97,7 @@ impl HeldOutRun<'_> {
             pairs.filter(|(_, held)| **held).map(|(sweep, _)| sweep.source_id.as_str()).collect();
         let is_held = |sweep: &SweepHeader| held.contains(sweep.source_id.as_str());
         let rest = without(&scene, is_held);
-        rules.check_labels(&rest).map_err(Stop::usage)?;
+        rules.check(&rest).map_err(Stop::usage)?;
         let settings = self.settings(rest.has_point_labels());
         let fused = self.fuse(&scene, is_held)?;
         let read_held = |sweep: &_| if is_held(sweep) { self.read(sweep) } else { Ok(None) };

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader, Timestamp};
+use occlabel_core::{Fault, Loss, PointsOf, Pose, Scene, SweepHeader, Timestamp};
 use occlabel_disk as disk;
 
 use super::cameras::{LENSES, read_cameras};
@@ -102,5 +102,6 @@ fn sweep_header(
         ego_from_lidar: lidars.ego_from_up,
         labelled: false,
         file,
+        points_of: PointsOf::Moment,
     })
 }

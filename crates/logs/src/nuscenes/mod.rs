@@ -41,6 +41,7 @@ use crate::{ImageFile, PointColumns, ReadOptions, ReaderDefaults, SceneSource, S
 pub(crate) use npz::read_data;
 #[cfg(any(test, fuzzing))]
 pub(crate) use optics::decode as decode_mask;
+pub(crate) use optics::{LensFields, mask_of};
 #[cfg(any(test, fuzzing))]
 pub(crate) use records::Records;
 

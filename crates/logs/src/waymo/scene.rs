@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use occlabel_core::{Fault, Loss, Scene, SweepHeader, Timestamp};
+use occlabel_core::{Fault, Loss, PointsOf, Scene, SweepHeader, Timestamp};
 
 use super::cameras::{all_exposures, expose, scene_cameras};
 use super::segment::{Frame, LidarCalibration, Segment};
@@ -86,6 +86,7 @@ fn sweep_headers(
                 world_from_ego: frame.world_from_ego,
                 ego_from_lidar: calibration.ego_from_lidar,
                 labelled,
+                points_of: PointsOf::Moment,
             });
         }
     }

@@ -3,6 +3,7 @@
 //! Each writes what the drive's scene says, faults of its annotator included, and nothing that a
 //! real log would not hold. All files go through [`Output`]: a log that looks whole is whole.
 
+mod cloud;
 mod exposures;
 mod files;
 mod masks;
@@ -16,6 +17,7 @@ mod waymo;
 mod wire;
 mod written;
 
+pub use cloud::write_cloud;
 pub use files::Output;
 pub use masks::write_masks;
 pub use mcap::write_mcap;

@@ -25,6 +25,7 @@ use super::files::Output;
 use super::raw_names::RawNames;
 use super::written::{Images, Written};
 
+pub(super) use calibrations::add_optics;
 use tables::Tables;
 
 /// The folder of the tables, which makes the log one.
