@@ -10,7 +10,7 @@ use crate::args::LogArgs;
 use crate::format_flags::name;
 
 /// Rules of faults that a folder of another format breaks.
-const LAYOUTS: [&str; 7] = [
+const LAYOUTS: [&str; 8] = [
     "version-folder",
     "waymo-layout",
     "semantickitti-layout",
@@ -18,6 +18,7 @@ const LAYOUTS: [&str; 7] = [
     "cloud-layout",
     "av2-layout",
     "av2",
+    "coda-layout",
 ];
 
 /// The fault with the format that the folder looks like, if it breaks the layout of the one given.

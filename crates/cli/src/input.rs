@@ -8,9 +8,9 @@ use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_disk as disk;
 use occlabel_logs::{
-    Argoverse2Log, CloudLog, CloudOptions, Kitti360Log, Masks, McapLog, McapOptions, NuScenesLog,
-    NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource,
-    SemanticKittiLog, TimeSource, WaymoLog,
+    Argoverse2Log, CloudLog, CloudOptions, CodaLog, Kitti360Log, Masks, McapLog, McapOptions,
+    NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults,
+    SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{
     Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
@@ -96,6 +96,7 @@ fn open_format(
         }
         Format::Waymo => WaymoLog::open(&log.input, read).map(|log| Box::new(log) as _),
         Format::Av2 => Argoverse2Log::open(&log.input, read).map(|log| Box::new(log) as _),
+        Format::Coda => CodaLog::open(&log.input, read).map(|log| Box::new(log) as _),
         Format::Semantickitti if Kitti360Log::is_log(&log.input) => {
             Kitti360Log::open(&log.input, read).map(|log| Box::new(log) as _)
         }
@@ -125,6 +126,7 @@ fn autos(
         Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref())?,
         Format::Waymo => WaymoLog::format_defaults(&log.input)?,
         Format::Av2 => Argoverse2Log::format_defaults(),
+        Format::Coda => CodaLog::format_defaults(),
         Format::Semantickitti => SemanticKittiLog::format_defaults(),
         Format::Cloud => {
             tables.cloud = given.cloud;
@@ -182,6 +184,7 @@ fn usage_or_failed(fault: Fault) -> Stop {
         | "waymo-v2"
         | "av2"
         | "av2-layout"
+        | "coda-layout"
         | "semantickitti-layout"
         | "mcap-files"
         | "cloud-layout"

@@ -6,7 +6,7 @@ use occlabel_core::{Fault, Taxonomy};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{
     Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_cloud,
-    write_masks, write_mcap, write_nuscenes, write_semantickitti, write_waymo,
+    write_coda, write_masks, write_mcap, write_nuscenes, write_semantickitti, write_waymo,
 };
 
 use crate::args::{Format, ImagesArg, SimulateArgs, WrittenFormat};
@@ -120,6 +120,9 @@ fn write(
             .map(|(written, last)| (written, last.to_owned())),
         WrittenFormat::Semantickitti => write_semantickitti(&drives[0], output)
             .map(|(written, last)| (written, last.to_owned())),
+        WrittenFormat::Coda => {
+            write_coda(&drives[0], images, output).map(|(written, last)| (written, last.to_owned()))
+        }
         WrittenFormat::Mcap => write_mcap(&drives[0], taxonomy, images, output),
         WrittenFormat::Cloud => write_cloud(&drives[0], taxonomy, output),
         WrittenFormat::Waymo => write_waymo(&drives[0], output),
@@ -161,6 +164,7 @@ fn label_line(args: &SimulateArgs, world: &World) -> String {
         WrittenFormat::Nuscenes => (Format::Nuscenes, true),
         WrittenFormat::Mcap => (Format::Mcap, true),
         WrittenFormat::Semantickitti => (Format::Semantickitti, false),
+        WrittenFormat::Coda => (Format::Coda, false),
         WrittenFormat::Waymo | WrittenFormat::WaymoV2 => (Format::Waymo, false),
         WrittenFormat::Cloud => (Format::Cloud, false),
     };

@@ -16,8 +16,8 @@ use crate::raw_labels::RawLabels;
 use crate::semantickitti::{label_name, line_of_pose, line_of_time};
 use crate::waymo::compressed;
 use crate::{
-    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, cloud, kitti360, mcap, nuscenes,
-    semantickitti,
+    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, cloud, coda, kitti360, mcap,
+    nuscenes, semantickitti,
 };
 
 /// All of them.
@@ -59,6 +59,7 @@ pub const DOORS: &[Door] = &[
         knock: crate::waymo::doors::segment,
         seeds: crate::waymo::doors::files,
     },
+    Door { name: "coda", knock: coda::doors::sequence, seeds: coda::doors::files },
     Door { name: "kitti360_text", knock: kitti360::doors::text, seeds: kitti360::doors::texts },
     Door { name: "kitti360_boxes", knock: kitti360::doors::boxes, seeds: kitti360::doors::objects },
     Door { name: "kitti360_fused", knock: kitti360::doors::fused, seeds: kitti360::doors::clouds },

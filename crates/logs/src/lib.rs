@@ -22,6 +22,7 @@
 mod argoverse2;
 mod check;
 mod cloud;
+mod coda;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
 mod files;
@@ -53,6 +54,7 @@ mod wire;
 pub use argoverse2::Argoverse2Log;
 pub use check::{Finding, SceneSurvey, Severity, SweepSurvey, UnknownSum, check_poses};
 pub use cloud::{CloudLog, CloudOptions};
+pub use coda::CodaLog;
 pub use formats::looks_like;
 pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};

@@ -17,7 +17,7 @@ pub const PRESETS: &[(&str, &str)] = shipped!(
 /// Taxonomies by name.
 pub const TAXONOMIES: &[(&str, &str)] = shipped!(
     "taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc" "semantickitti" "argoverse2"
-        "occupancy"
+        "occupancy" "coda"
 );
 
 /// What the pixels of masks mean in label sets that many segmenters speak, by name.

@@ -111,6 +111,6 @@ pub use world::World;
 #[cfg(feature = "waymo-v2")]
 pub use write::write_waymo_v2;
 pub use write::{
-    Images, Output, Written, write_cloud, write_masks, write_mcap, write_nuscenes,
+    Images, Output, Written, write_cloud, write_coda, write_masks, write_mcap, write_nuscenes,
     write_semantickitti, write_waymo,
 };

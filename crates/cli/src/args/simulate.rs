@@ -35,6 +35,8 @@ pub(crate) enum WrittenFormat {
     Nuscenes,
     /// One lidar, no boxes, no images.
     Semantickitti,
+    /// One lidar, two cameras that it triggers; point labels of terrain alone.
+    Coda,
     Mcap,
     /// Waymo Open Dataset, v1: a TFRecord file.
     Waymo,

@@ -58,7 +58,8 @@ impl Loaded {
             keyframes(&options.keyframes, name, &sweeps, |_| false, &exposures, &notes)?;
         let (warnings, refused) = notes.finish();
         let name = name.clone();
-        let scene = Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused };
+        let scene =
+            Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused };
         Ok(Self { scene, classes, tracks: by_row })
     }
 }

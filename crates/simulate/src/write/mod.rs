@@ -4,6 +4,7 @@
 //! real log would not hold. All files go through [`Output`]: a log that looks whole is whole.
 
 mod cloud;
+mod coda;
 mod exposures;
 mod files;
 mod masks;
@@ -18,6 +19,7 @@ mod wire;
 mod written;
 
 pub use cloud::write_cloud;
+pub use coda::write_coda;
 pub use files::Output;
 pub use masks::write_masks;
 pub use mcap::write_mcap;
