@@ -19,6 +19,7 @@
 
 mod aggregated;
 mod blocks;
+mod body;
 mod boxes;
 mod bundles;
 pub mod camera;
@@ -43,6 +44,7 @@ mod walk;
 
 pub use aggregated::{AggregatedScene, BackgroundSweep, ClassCounts, DropCounts, ObjectSweep};
 pub use blocks::Blocks;
+pub use body::{Body, BodyMotion, TriangleMesh};
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
 pub use bundles::{BUNDLE, Bundles, Reach};
 pub use camera::Camera;
