@@ -8,9 +8,9 @@ use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_disk as disk;
 use occlabel_logs::{
-    Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions, PointColumns,
-    QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource,
-    WaymoLog,
+    Argoverse2Log, Kitti360Log, McapLog, McapOptions, MeshFolder, NuScenesLog, NuScenesOptions,
+    PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog,
+    TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{
     Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
@@ -36,6 +36,8 @@ pub(crate) struct Opened {
     pub(crate) rules: Rules,
     /// Whether the configuration names the lidar that keyframes refer to.
     pub(crate) names_lidar: bool,
+    /// Who is known by their surface.
+    pub(crate) meshes: Option<MeshFolder>,
 }
 
 /// Opens the log and resolves the configuration against it.
@@ -68,6 +70,7 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let names_lidar = config.keyframes.reference_lidar != "auto";
     let stop = |fault| usage_or_failed(with_format(fault, log));
     let autos = autos(log, scenes.as_ref(), &mut config.reader).map_err(stop)?;
+    let meshes = open_meshes(&mut config, &log.input).map_err(Stop::usage)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
@@ -79,7 +82,7 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     };
     let mcap = config.reader.mcap.clone();
     let source = open_format(log, options, mcap).map_err(stop)?;
-    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, names_lidar })
+    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, names_lidar, meshes })
 }
 
 /// Opens a log by its format.
@@ -106,6 +109,19 @@ fn open_format(
             McapLog::open(&log.input, options).map(|log| Box::new(log) as _)
         }
     }
+}
+
+/// The folder of meshes, if there is any; its name takes the place of its path.
+fn open_meshes(config: &mut Config, root: &Path) -> Result<Option<MeshFolder>, Fault> {
+    let is_there = disk::is_dir(&root.join("meshes"));
+    let folder = match config.meshes.folder.as_str() {
+        "none" => None,
+        "auto" => is_there.then_some("meshes"),
+        path => Some(path),
+    };
+    let folder = folder.map(|folder| MeshFolder::open(root, folder)).transpose()?;
+    config.meshes.folder = folder.as_ref().map_or("none", MeshFolder::name).to_owned();
+    Ok(folder)
 }
 
 /// What the format itself says where the configuration says `"auto"`; tables of other formats go,

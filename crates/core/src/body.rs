@@ -15,6 +15,15 @@ pub struct TriangleMesh {
     faces: Arc<[[u32; 3]]>,
 }
 
+/// A mesh as a log has it, in a frame that the configuration tells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoggedMesh {
+    /// The log's own name of the track whose body it is.
+    pub track: String,
+    /// The surface.
+    pub mesh: TriangleMesh,
+}
+
 /// Somebody at a keyframe, known by their surface.
 #[derive(Clone, Debug)]
 pub struct Body {

@@ -44,7 +44,7 @@ mod walk;
 
 pub use aggregated::{AggregatedScene, BackgroundSweep, ClassCounts, DropCounts, ObjectSweep};
 pub use blocks::Blocks;
-pub use body::{Body, BodyMotion, TriangleMesh};
+pub use body::{Body, BodyMotion, LoggedMesh, TriangleMesh};
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
 pub use bundles::{BUNDLE, Bundles, Reach};
 pub use camera::Camera;

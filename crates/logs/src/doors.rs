@@ -16,7 +16,7 @@ use crate::raw_labels::RawLabels;
 use crate::semantickitti::{label_name, line_of_pose, line_of_time};
 use crate::waymo::compressed;
 use crate::{
-    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, kitti360, mcap, nuscenes,
+    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, kitti360, mcap, meshes, nuscenes,
     semantickitti,
 };
 
@@ -58,6 +58,9 @@ pub const DOORS: &[Door] = &[
         knock: crate::waymo::doors::segment,
         seeds: crate::waymo::doors::files,
     },
+    Door { name: "mesh_obj", knock: meshes::doors::read_obj, seeds: meshes::doors::objs },
+    Door { name: "mesh_ply", knock: meshes::doors::read_ply, seeds: meshes::doors::plys },
+    Door { name: "mesh_npz", knock: meshes::doors::read_arrays, seeds: meshes::doors::archives },
     Door { name: "kitti360_text", knock: kitti360::doors::text, seeds: kitti360::doors::texts },
     Door { name: "kitti360_boxes", knock: kitti360::doors::boxes, seeds: kitti360::doors::objects },
     Door { name: "kitti360_fused", knock: kitti360::doors::fused, seeds: kitti360::doors::clouds },

@@ -31,6 +31,7 @@ mod keyframes;
 mod kitti360;
 mod kitti_labels;
 mod mcap;
+mod meshes;
 #[cfg(test)]
 mod mutation_tests;
 mod names;
@@ -55,6 +56,7 @@ pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
 pub use mcap::{McapLog, McapOptions, TimeSource};
+pub use meshes::{MeshFile, MeshFolder};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
 pub use options::{ReadOptions, unknown_hint, without_stand_in};
 pub use points::PointColumns;

@@ -3,7 +3,7 @@
 use occlabel_core::{Fault, McapSettings};
 
 use crate::Config;
-use crate::config::EgoBox;
+use crate::config::{EgoBox, MeshTable};
 
 /// Rays longer than this many voxels are refused (labels.md section 8).
 const LONGEST_RAY_VOXELS: f64 = (1 << 20) as f64;
@@ -14,6 +14,7 @@ pub(crate) fn check(config: &Config) -> Result<(), Fault> {
     check_counts(config)?;
     check_spans(config)?;
     check_distances(config)?;
+    check_meshes(&config.meshes)?;
     check_ego_box(&config.aggregate.ego_box_m)?;
     check_mcap(&config.reader.mcap)?;
     check_reach(config)
@@ -46,6 +47,15 @@ fn check_distances(config: &Config) -> Result<(), Fault> {
     not_negative("raycast.flat_ignore_dz_m", config.raycast.flat_ignore_dz_m)?;
     positive("occlusion.depth_max_m", config.occlusion.depth_max_m)?;
     need("states.min_hit_ratio", (0.0..=1.0).contains(&ratio), "0 to 1", ratio)
+}
+
+fn check_meshes(meshes: &MeshTable) -> Result<(), Fault> {
+    at_least_one("meshes.min_points", meshes.min_points)?;
+    not_negative("meshes.max_residual_m", meshes.max_residual_m)?;
+    positive("meshes.max_pair_m", meshes.max_pair_m)?;
+    positive("meshes.point_error_m", meshes.point_error_m)?;
+    positive("meshes.mesh_error_m", meshes.mesh_error_m)?;
+    positive("meshes.mesh_error_rad", meshes.mesh_error_rad)
 }
 
 fn check_ego_box(ego_box: &EgoBox) -> Result<(), Fault> {

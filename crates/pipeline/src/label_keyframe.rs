@@ -8,11 +8,11 @@ use occlabel_core::{
 };
 use occlabel_occlusion::{Eye, Lenses, matter, visible};
 use occlabel_raycast::{Casting, Crossings, StateSettings, classify, count};
-use occlabel_voxelize::voxelize;
 
 use crate::Rules;
 use crate::aggregate_scene::standing_boxes;
 use crate::flow::flow;
+use crate::laid_over::{lay_over, votes_beside};
 
 /// A stage, as named to whoever watches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -83,11 +83,13 @@ pub fn label_keyframe(
     let standing = standing_boxes(&scene.tracks, keyframe.time, rules);
     let moment = moment(scene, keyframe, rules, &standing);
     let instant = compose(aggregated, &moment, &rules.window);
-    let votes = voxelize(&instant, spec, &rules.votes());
+    let bodies = aggregated.bodies_at(keyframe.time);
+    let mut votes = votes_beside(bodies, &instant, spec, &rules.votes());
 
     enter(Stage::Raycast);
     let counts = count(&instant, spec, &rules.rays(), &options.casting(&rules.states));
-    let states = classify(&counts, &votes, ground, &rules.states);
+    let mut states = classify(&counts, &votes, ground, &rules.states);
+    lay_over(bodies, &moment.grid_from_world, spec, &mut votes, &mut states);
     let occupied = occupied_votes(votes, &states);
     // Taken either way: the counts of a fine grid are not held while cameras look.
     let counts = options.evidence.then(|| saturated(counts));
@@ -100,7 +102,7 @@ pub fn label_keyframe(
     enter(Stage::Finish);
     let mut labels = arrays(rules.taxonomy.free, states, &occupied, &camera_bits);
     labels.evidence = counts.map(|counts| {
-        let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
+        let flow = flow(scene, &instant, bodies, &occupied, spec, &rules.boxes);
         evidence(counts, &labels.states, &occupied, camera_bits, flow)
     });
     LabelledKeyframe { labels, rays: instant.ray_count() }

@@ -78,6 +78,7 @@ mod rotation;
 mod schedule;
 mod shape;
 mod shipped;
+mod skin;
 mod standing;
 mod swing;
 mod towed;
@@ -87,7 +88,7 @@ mod world;
 mod world_file;
 mod write;
 
-pub use annotator::{Annotator, BoxTime, LabelledSweeps, LoggedPoses, Unboxed};
+pub use annotator::{Annotator, BoxTime, DrawnMesh, LabelledSweeps, LoggedPoses, Unboxed};
 pub use camera::WorldCamera;
 pub use clock::Clock;
 pub use drive::Drive;
@@ -109,5 +110,6 @@ pub use world::World;
 #[cfg(feature = "waymo-v2")]
 pub use write::write_waymo_v2;
 pub use write::{
-    Images, Output, Written, write_mcap, write_nuscenes, write_semantickitti, write_waymo,
+    Images, MeshNames, Output, Written, write_mcap, write_meshes, write_nuscenes,
+    write_semantickitti, write_waymo,
 };

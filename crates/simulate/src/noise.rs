@@ -26,6 +26,8 @@ pub(crate) enum Kind {
     Camera,
     /// The drift of the ego's pose.
     Drift,
+    /// A mover's mesh at a keyframe.
+    Mesh,
 }
 
 impl Chance {

@@ -21,6 +21,9 @@ pub(crate) struct SimulateArgs {
     /// Which exposures become image files, with a mask of classes each (mcap: without; waymo: none).
     #[arg(long, value_enum, default_value_t = ImagesArg::Keyframes)]
     pub(crate) images: ImagesArg,
+    /// Write the surfaces of people at keyframes too, as OBJ files below `meshes` (nuscenes, mcap).
+    #[arg(long)]
+    pub(crate) meshes: bool,
     /// nuScenes: so many scenes, each with a seed of its own.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=9999))]
     pub(crate) scenes: u32,

@@ -6,6 +6,7 @@
 mod exposures;
 mod files;
 mod mcap;
+mod meshes;
 mod nuscenes;
 mod png;
 mod points;
@@ -17,6 +18,7 @@ mod written;
 
 pub use files::Output;
 pub use mcap::write_mcap;
+pub use meshes::{MeshNames, write_meshes};
 pub use nuscenes::write_nuscenes;
 pub use semantickitti::write_semantickitti;
 pub use waymo::write_waymo;
