@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use occlabel_annotate::{BoxSource, box_at};
 use occlabel_core::{
-    AggregatedScene, Body, BodyMotion, BoxTrack, ClassId, Fault, Keyframe, LoggedMesh, Pose, Scene,
-    Timestamp, TrackId, TriangleMesh,
+    AggregatedScene, Body, BodyMotion, BoxTrack, ClassId, Fault, Keyframe, LoggedMesh, ObjectSweep,
+    Pose, Scene, TrackId, TriangleMesh,
 };
 use occlabel_meshes::{View, align, motion_between};
 use rayon::prelude::*;
@@ -89,7 +89,7 @@ pub fn embody(
     tracks: &MeshTracks,
     rules: &Rules,
 ) -> Vec<MeshFit> {
-    let bench = Bench { scene, sightings: sightings(aggregated), tracks, rules };
+    let bench = Bench { scene, objects: objects(aggregated), tracks, rules };
     let meshes: Vec<(&Keyframe, LoggedMesh)> = keyframes
         .into_iter()
         .flat_map(|of| of.meshes.into_iter().map(move |mesh| (of.keyframe, mesh)))
@@ -107,25 +107,18 @@ pub fn embody(
 /// What all meshes are fitted by.
 struct Bench<'a> {
     scene: &'a Scene,
-    sightings: BTreeMap<TrackId, Vec<Sighting>>,
+    objects: BTreeMap<TrackId, Vec<&'a ObjectSweep>>,
     tracks: &'a MeshTracks,
     rules: &'a Rules,
 }
 
-/// What a sweep saw of a track, box coordinates.
-struct Sighting {
-    time: Timestamp,
-    view: View,
-}
-
-fn sightings(aggregated: &AggregatedScene<ClassId>) -> BTreeMap<TrackId, Vec<Sighting>> {
-    let mut sightings: BTreeMap<TrackId, Vec<Sighting>> = BTreeMap::new();
+/// The points of each track, sweep by sweep.
+fn objects(aggregated: &AggregatedScene<ClassId>) -> BTreeMap<TrackId, Vec<&ObjectSweep>> {
+    let mut objects: BTreeMap<TrackId, Vec<&ObjectSweep>> = BTreeMap::new();
     for object in aggregated.objects.iter().filter(|object| !object.cloud.is_empty()) {
-        let view = View { from: object.origin(0), points: object.cloud.positions.clone() };
-        let sighting = Sighting { time: object.time, view };
-        sightings.entry(object.track).or_default().push(sighting);
+        objects.entry(object.track).or_default().push(object);
     }
-    sightings
+    objects
 }
 
 impl Bench<'_> {
@@ -170,18 +163,19 @@ impl Bench<'_> {
         let Some(track) = track else { return Vec::new() };
         let boxed = box_at(track, keyframe.time, &self.rules.boxes);
         let boxed = boxed.filter(|(_, source)| *source != BoxSource::Extrapolated);
-        let (Some((boxed, _)), Some(seen)) = (boxed, self.sightings.get(&track.id)) else {
+        let (Some((boxed, _)), Some(seen)) = (boxed, self.objects.get(&track.id)) else {
             return Vec::new();
         };
         let same_time_s = self.rules.rays().settings.same_time_s;
         let now = seen.iter().filter(|seen| seen.time.seconds_apart(keyframe.time) <= same_time_s);
-        now.map(|seen| placed(&seen.view, &boxed.world_from_box)).collect()
+        now.map(|seen| placed(seen, &boxed.world_from_box)).collect()
     }
 }
 
-fn placed(view: &View, world_from_box: &Pose) -> View {
-    let points = view.points.iter().map(|point| world_from_box * point).collect();
-    View { from: world_from_box * view.from, points }
+/// What a sweep saw of a track, where its box stands so.
+fn placed(seen: &ObjectSweep, world_from_box: &Pose) -> View {
+    let points = seen.cloud.positions.iter().map(|point| world_from_box * point).collect();
+    View { from: world_from_box * seen.origin(0), points }
 }
 
 /// Has each body move as its neighbours in time say.
