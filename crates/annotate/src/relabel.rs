@@ -69,7 +69,13 @@ pub fn relabel(
         class_from += classes;
     }
     class_from.boxes = scene.objects.iter().map(|object| object.cloud.len() as u64).sum();
-    AggregatedScene { background, objects: scene.objects, dropped, class_from }
+    AggregatedScene {
+        background,
+        objects: scene.objects,
+        bodies: scene.bodies,
+        dropped,
+        class_from,
+    }
 }
 
 /// What the vote gives each unlabelled point: a list a sweep, a verdict a point.

@@ -9,8 +9,8 @@ use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_disk as disk;
 use occlabel_logs::{
     Argoverse2Log, CloudLog, CloudOptions, CodaLog, Kitti360Log, Masks, McapLog, McapOptions,
-    NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults,
-    SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
+    MeshFolder, NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions,
+    ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{
     Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
@@ -40,6 +40,8 @@ pub(crate) struct Opened {
     pub(crate) masks: Option<Masks>,
     /// Whether the configuration names the lidar that keyframes refer to.
     pub(crate) names_lidar: bool,
+    /// Who is known by their surface.
+    pub(crate) meshes: Option<MeshFolder>,
 }
 
 /// Opens the log and resolves the configuration against it.
@@ -72,6 +74,7 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let names_lidar = config.keyframes.reference_lidar != "auto";
     let stop = |fault| usage_or_failed(with_format(fault, log));
     let autos = autos(log, scenes.as_ref(), &mut config.reader).map_err(stop)?;
+    let meshes = open_meshes(&mut config, &log.input).map_err(Stop::usage)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
     let unknown_as = unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class);
     let masks = open_masks(&log.input, &mut config.paint, &taxonomy, unknown_as);
@@ -80,7 +83,8 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
     let options = ReadOptions { scenes, unknown_as, taxonomy, keyframes: config.keyframes.clone() };
     let source = open_format(log, options, &config).map_err(stop)?;
-    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, masks, names_lidar })
+    let preset = None;
+    Ok(Opened { source, preset, config, taxonomy_hash, rules, masks, meshes, names_lidar })
 }
 
 /// Opens a log by its format.
@@ -112,6 +116,19 @@ fn open_format(
             CloudLog::open(&log.input, options).map(|log| Box::new(log) as _)
         }
     }
+}
+
+/// The folder of meshes, if there is any; its name takes the place of its path.
+fn open_meshes(config: &mut Config, root: &Path) -> Result<Option<MeshFolder>, Fault> {
+    let is_there = disk::is_dir(&root.join("meshes"));
+    let folder = match config.meshes.folder.as_str() {
+        "none" => None,
+        "auto" => is_there.then_some("meshes"),
+        path => Some(path),
+    };
+    let folder = folder.map(|folder| MeshFolder::open(root, folder)).transpose()?;
+    config.meshes.folder = folder.as_ref().map_or("none", MeshFolder::name).to_owned();
+    Ok(folder)
 }
 
 /// What the format itself says where the configuration says `"auto"`; tables of other formats go,

@@ -5,8 +5,9 @@ use std::path::Path;
 use occlabel_core::{Fault, Taxonomy};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{
-    Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_cloud,
-    write_coda, write_masks, write_mcap, write_nuscenes, write_semantickitti, write_waymo,
+    Drive, Images, MeshNames, Output, WORLDS, World, Written, shipped_world, world_text_with,
+    write_cloud, write_coda, write_masks, write_mcap, write_meshes, write_nuscenes,
+    write_semantickitti, write_waymo,
 };
 
 use crate::args::{Format, ImagesArg, SimulateArgs, WrittenFormat};
@@ -15,6 +16,7 @@ use crate::exit::{Outcome, Stop};
 use crate::format_flags::name;
 
 pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Stop> {
+    let mesh_names = mesh_names(args).map_err(Stop::usage)?;
     let worlds = worlds(args).map_err(Stop::usage)?;
     let taxonomy = taxonomy(&worlds[0].1).map_err(Stop::usage)?;
     let drive = |(_, world): &(String, World)| Drive::new(world.clone(), &taxonomy);
@@ -27,8 +29,9 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
     if args.masks && args.format != WrittenFormat::Nuscenes {
         drives.iter().try_for_each(|drive| write_masks(drive, images(args), &output).map(drop))?;
     }
+    let meshes = mesh_names.map(|names| write_meshes(&drives, names, &output)).transpose()?;
     let size = output.finish(&last)?;
-    tell(&written, size, console);
+    tell(&written, meshes, size, console);
     console.result(&format!("label it with  {}", label_line(args, &worlds[0].1)));
     Ok(Outcome::Complete)
 }
@@ -136,8 +139,21 @@ fn write(
     }
 }
 
-fn tell(written: &Written, (files, bytes): (usize, u64), console: &Console) {
+/// What names the files of meshes, if they are asked for.
+fn mesh_names(args: &SimulateArgs) -> Result<Option<MeshNames>, Fault> {
+    match args.format {
+        _ if !args.meshes => Ok(None),
+        WrittenFormat::Nuscenes => Ok(Some(MeshNames::Nuscenes)),
+        WrittenFormat::Mcap => Ok(Some(MeshNames::Mcap)),
+        _ => Err(Fault::new("usage", "--meshes", "--format nuscenes or mcap", "another format")),
+    }
+}
+
+fn tell(written: &Written, meshes: Option<usize>, (files, bytes): (usize, u64), console: &Console) {
     let Written { scenes, sweeps, labelled, points, keyframes, boxes, images } = written;
+    if let Some(meshes) = meshes {
+        console.result(&format!("meshes     {meshes}"));
+    }
     for line in [
         format!("scenes     {scenes}"),
         format!("sweeps     {sweeps}, {labelled} labelled"),

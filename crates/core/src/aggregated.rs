@@ -2,9 +2,9 @@
 
 use nalgebra::Point3;
 
-use crate::{Box3, Brush, Bundles, ClassId, PointCloud, Timestamp, TrackId};
+use crate::{Body, Box3, Brush, Bundles, ClassId, PointCloud, Timestamp, TrackId};
 
-/// A scene's points: what stands in the world, and what moves with a track.
+/// A scene's points: what stands in the world, and what moves with a track; and bodies beside them.
 ///
 /// `L` is `Option<ClassId>` until the background is relabelled, then [`ClassId`].
 #[derive(Clone, Debug)]
@@ -13,6 +13,8 @@ pub struct AggregatedScene<L> {
     pub background: Vec<BackgroundSweep<L>>,
     /// One cloud for each track in each sweep that has points in its box.
     pub objects: Vec<ObjectSweep>,
+    /// Who is known by their surface, in order of time and track.
+    pub bodies: Vec<Body>,
     /// What was left out.
     pub dropped: DropCounts,
     /// Where the classes of its points come from; zero until the background is relabelled.
@@ -117,13 +119,20 @@ impl<L> AggregatedScene<L> {
     /// A scene of these points, of which nothing was dropped.
     pub fn new(background: Vec<BackgroundSweep<L>>, objects: Vec<ObjectSweep>) -> Self {
         let (dropped, class_from) = (DropCounts::default(), ClassCounts::default());
-        Self { background, objects, dropped, class_from }
+        Self { background, objects, bodies: Vec::new(), dropped, class_from }
     }
 
     /// How many points are left.
     pub fn point_count(&self) -> usize {
         let background: usize = self.background.iter().map(|sweep| sweep.cloud.len()).sum();
         background + self.objects.iter().map(|object| object.cloud.len()).sum::<usize>()
+    }
+
+    /// The bodies of a time, in order of their tracks.
+    pub fn bodies_at(&self, time: Timestamp) -> &[Body] {
+        let first = self.bodies.partition_point(|body| body.time < time);
+        let count = self.bodies[first..].partition_point(|body| body.time == time);
+        &self.bodies[first..first + count]
     }
 }
 

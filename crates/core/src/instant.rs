@@ -13,7 +13,7 @@ use crate::{
 /// that brings it into the grid frame. Nothing is copied but what is cut.
 ///
 /// What is occupied and what was hit are both read from here, so they cannot disagree.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Instant<'a> {
     /// The keyframe's time.
     pub time: Timestamp,
@@ -30,7 +30,7 @@ pub struct Instant<'a> {
 }
 
 /// The points of a track in one sweep, and where they belong now.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PlacedObject<'a> {
     /// The points, in box coordinates.
     pub object: &'a ObjectSweep,
@@ -61,6 +61,13 @@ impl<'a> Instant<'a> {
         let background: usize = self.background.iter().map(|sweep| sweep.cloud.len()).sum();
         let objects: usize = self.objects.iter().map(|placed| placed.object.cloud.len()).sum();
         (background + objects) as u64
+    }
+
+    /// The same without the points of some tracks.
+    pub fn without(&self, tracks: &[TrackId]) -> Self {
+        let mut rest = self.clone();
+        rest.objects.retain(|placed| !tracks.contains(&placed.object.track));
+        rest
     }
 
     /// The instant of a whole scene in which nothing moves, its grid being world: for tests and

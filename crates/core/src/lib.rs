@@ -19,6 +19,7 @@
 
 mod aggregated;
 mod blocks;
+mod body;
 mod boxes;
 mod brush;
 mod bundles;
@@ -47,6 +48,7 @@ mod walk;
 
 pub use aggregated::{AggregatedScene, BackgroundSweep, ClassCounts, DropCounts, ObjectSweep};
 pub use blocks::Blocks;
+pub use body::{Body, BodyMotion, LoggedMesh, TriangleMesh};
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
 pub use brush::Brush;
 pub use bundles::{BUNDLE, Bundles, Reach};

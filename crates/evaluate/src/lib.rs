@@ -38,6 +38,7 @@
 //!     classes: vec!["building".into()],
 //!     free: 17,
 //!     flat: ClassSet::default(),
+//!     deformable: ClassSet::default(),
 //!     ring_m: RINGS_M.to_vec(),
 //!     noise_sigma_m: 0.0,
 //! };

@@ -34,6 +34,7 @@ mod kitti360;
 mod kitti_labels;
 mod masks;
 mod mcap;
+mod meshes;
 #[cfg(test)]
 mod mutation_tests;
 mod names;
@@ -61,6 +62,7 @@ pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
 pub use masks::{MaskFile, Masks, SceneMasks};
 pub use mcap::{McapLog, McapOptions, TimeSource};
+pub use meshes::{MeshFile, MeshFolder};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
 pub use options::{ReadOptions, unknown_hint, without_stand_in};
 pub use points::PointColumns;

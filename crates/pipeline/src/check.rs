@@ -3,7 +3,7 @@
 use occlabel_core::{CloudSettings, Fault, McapSettings};
 
 use crate::Config;
-use crate::config::EgoBox;
+use crate::config::{EgoBox, MeshTable};
 
 /// Rays longer than this many voxels are refused (labels.md section 8).
 const LONGEST_RAY_VOXELS: f64 = (1 << 20) as f64;
@@ -17,6 +17,7 @@ pub(crate) fn check(config: &Config) -> Result<(), Fault> {
     check_counts(config)?;
     check_spans(config)?;
     check_distances(config)?;
+    check_meshes(&config.meshes)?;
     check_ego_box(&config.aggregate.ego_box_m)?;
     check_pixels("paint.borders_px", config.paint.borders_px)?;
     check_pixels("paint.splat_px", config.paint.splat_px)?;
@@ -59,6 +60,15 @@ fn check_distances(config: &Config) -> Result<(), Fault> {
 
 fn check_pixels(key: &str, pixels: u32) -> Result<(), Fault> {
     need(key, pixels <= MOST_PX, &format!("at most {MOST_PX}"), pixels)
+}
+
+fn check_meshes(meshes: &MeshTable) -> Result<(), Fault> {
+    at_least_one("meshes.min_points", meshes.min_points)?;
+    not_negative("meshes.max_residual_m", meshes.max_residual_m)?;
+    positive("meshes.max_pair_m", meshes.max_pair_m)?;
+    positive("meshes.point_error_m", meshes.point_error_m)?;
+    positive("meshes.mesh_error_m", meshes.mesh_error_m)?;
+    positive("meshes.mesh_error_rad", meshes.mesh_error_rad)
 }
 
 fn check_ego_box(ego_box: &EgoBox) -> Result<(), Fault> {

@@ -33,6 +33,8 @@ pub struct Config {
     pub raycast: RaySettings,
     /// How counts are judged.
     pub states: StateSettings,
+    /// Whose surface is known.
+    pub meshes: MeshTable,
     /// What cameras see.
     pub occlusion: OcclusionSettings,
     /// What the classes are.
@@ -204,6 +206,44 @@ pub enum NoLimit {
     None,
 }
 
+/// The `[meshes]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshTable {
+    /// `"none"`, `"auto"` (`meshes` below the log's root, if that is there), or a path from the root.
+    pub folder: String,
+    /// The frame of their vertices.
+    pub frame: MeshFrame,
+    /// The class of a mesh without a track: its name, or `"auto"`.
+    pub class: String,
+    /// Whether they are moved onto the points of their tracks.
+    pub align: bool,
+    /// Meshes with fewer points stay where they are.
+    pub min_points: usize,
+    /// Meshes whose points lie farther off in the mean are refused, metres.
+    pub max_residual_m: f64,
+    /// A point farther than this from a mesh has no say, metres.
+    pub max_pair_m: f64,
+    /// How far points lie off a right surface, metres.
+    pub point_error_m: f64,
+    /// How far meshes are off, metres.
+    pub mesh_error_m: f64,
+    /// The same of their attitude, radians.
+    pub mesh_error_rad: f64,
+}
+
+/// The frame of meshes' vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeshFrame {
+    /// The log's world.
+    World,
+    /// The ego frame of the keyframe's reference sweep.
+    Ego,
+    /// The lidar frame of that sweep.
+    Lidar,
+}
+
 /// The `[taxonomy]` table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -268,6 +308,11 @@ impl Config {
         if self.relabel.unknown_class == "taxonomy" {
             let name = taxonomy.unknown.map(|class| taxonomy.names[class.index()].clone());
             self.relabel.unknown_class = name.unwrap_or_else(|| "drop".into());
+        }
+        if self.meshes.class == "auto" {
+            let name = taxonomy.first_of(&taxonomy.deformable);
+            let name = name.map(|class| taxonomy.names[class.index()].clone());
+            self.meshes.class = name.unwrap_or_else(|| "none".into());
         }
     }
 

@@ -10,11 +10,11 @@ use occlabel_occlusion::{Eye, Lenses, matter, visible};
 use occlabel_raycast::{
     Casting, Crossings, RaySource, StateSettings, classify, count, count_hits, seen,
 };
-use occlabel_voxelize::voxelize;
 
 use crate::Rules;
 use crate::aggregate_scene::standing_boxes;
 use crate::flow::flow;
+use crate::laid_over::{lay_over, votes_beside};
 
 /// A stage, as named to whoever watches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -85,7 +85,8 @@ pub fn label_keyframe(
     let standing = standing_boxes(&scene.tracks, keyframe.time, rules);
     let moment = moment(scene, keyframe, rules, &standing);
     let instant = compose(aggregated, &moment, &rules.window);
-    let votes = voxelize(&instant, spec, &rules.votes());
+    let bodies = aggregated.bodies_at(keyframe.time);
+    let mut votes = votes_beside(bodies, &instant, spec, &rules.votes());
 
     enter(Stage::Raycast);
     let source = rules.rays().settings.source;
@@ -93,7 +94,8 @@ pub fn label_keyframe(
         RaySource::Lidar => count(&instant, spec, &rules.rays(), &options.casting(&rules.states)),
         RaySource::Camera => count_hits(&instant, spec),
     };
-    let states = classify(&counts, &votes, ground, &rules.states);
+    let mut states = classify(&counts, &votes, ground, &rules.states);
+    lay_over(bodies, &moment.grid_from_world, spec, &mut votes, &mut states);
     let occupied = occupied_votes(votes, &states);
     // Taken either way: the counts of a fine grid are not held while cameras look.
     let counts = options.evidence.then(|| saturated(counts));
@@ -111,7 +113,7 @@ pub fn label_keyframe(
     enter(Stage::Finish);
     let mut labels = arrays(rules.taxonomy.free, states, &occupied, &camera_bits);
     labels.evidence = counts.map(|counts| {
-        let flow = flow(scene, &instant, &occupied, spec, &rules.boxes);
+        let flow = flow(scene, &instant, bodies, &occupied, spec, &rules.boxes);
         evidence(counts, &labels.states, &occupied, camera_bits, flow)
     });
     LabelledKeyframe { labels, rays: instant.ray_count() }

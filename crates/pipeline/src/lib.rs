@@ -22,6 +22,7 @@
 //! ```
 
 mod aggregate_scene;
+mod bodies;
 mod check;
 mod config;
 mod cost;
@@ -29,6 +30,7 @@ mod cost;
 pub mod doors;
 mod flow;
 mod label_keyframe;
+mod laid_over;
 mod layers;
 mod memory;
 mod own_sensors;
@@ -39,8 +41,10 @@ mod scene_work;
 mod standing;
 
 pub use aggregate_scene::{aggregate_painted_scene, aggregate_scene, boxes_at, sort_scene};
+pub use bodies::{Fit, KeyframeMeshes, MeshFit, MeshTracks, embody, mesh_tracks};
 pub use config::{
-    Autos, Config, EgoBox, GridFrame, GridTable, Limit, PaintTable, ReaderTables, VoxelSize,
+    Autos, Config, EgoBox, GridFrame, GridTable, Limit, MeshFrame, MeshTable, PaintTable,
+    ReaderTables, VoxelSize,
 };
 pub use cost::Cost;
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
@@ -51,6 +55,6 @@ pub use paint_scene::{MaskedExposures, paint_scene};
 pub use presets::{
     MASK_TABLES, PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_masks, shipped_taxonomy,
 };
-pub use rules::Rules;
+pub use rules::{MeshRules, Rules};
 pub use scene_work::{CastingCost, SceneWork};
 pub use standing::standing_at;

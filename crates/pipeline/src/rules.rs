@@ -6,12 +6,13 @@ use nalgebra::Point3;
 use occlabel_aggregate::{SplitSettings, WindowSettings};
 use occlabel_annotate::{BoxSettings, GhostClasses, PaintSettings, RelabelSettings};
 use occlabel_core::{BoxGrowth, ClassId, Fault, GridSpec, Pose, Scene, SweepHeader, Taxonomy};
+use occlabel_meshes::AlignSettings;
 use occlabel_occlusion::OcclusionSettings;
 use occlabel_raycast::{RayRules, RaySettings, RaySource, StateSettings};
 use occlabel_voxelize::{Vote, VoteRules};
 
-use crate::config::{EgoBox, RelabelTable};
-use crate::{Config, GridFrame};
+use crate::config::{EgoBox, MeshTable, RelabelTable};
+use crate::{Config, GridFrame, MeshFrame};
 
 /// The settings of every stage, resolved.
 #[derive(Clone, Debug)]
@@ -32,6 +33,8 @@ pub struct Rules {
     pub paint: Option<PaintSettings>,
     /// Section 9.
     pub states: StateSettings,
+    /// Section 9a.
+    pub meshes: MeshRules,
     /// Section 10.
     pub occlusion: OcclusionSettings,
     relabel: RelabelTable,
@@ -40,11 +43,26 @@ pub struct Rules {
     rays: RaySettings,
 }
 
+/// What is made of meshes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshRules {
+    /// The frame of their vertices.
+    pub frame: MeshFrame,
+    /// The class of one without a track; none if the taxonomy has nothing that changes shape.
+    pub class: Option<ClassId>,
+    /// How they are moved onto points; none if they stay.
+    pub align: Option<AlignSettings>,
+    /// Meshes with fewer points stay.
+    pub min_points: usize,
+    /// Meshes whose points lie farther off in the mean are refused, metres.
+    pub max_residual_m: f64,
+}
+
 impl Rules {
     /// Binds a resolved configuration to its taxonomy.
     ///
     /// # Errors
-    /// If the grid is impossible or `unknown_class` names no class.
+    /// If the grid is impossible, or `unknown_class` or `meshes.class` names no class.
     pub fn new(config: &Config, taxonomy: Arc<Taxonomy>) -> Result<Self, Fault> {
         let aggregate = &config.aggregate;
         let growth = BoxGrowth { scale: aggregate.box_scale, margin_m: aggregate.box_margin_m };
@@ -66,6 +84,7 @@ impl Rules {
             },
             paint: config.paint.settings(),
             states: config.states,
+            meshes: mesh_rules(&config.meshes, &taxonomy)?,
             occlusion: config.occlusion,
             relabel: config.relabel.clone(),
             unknown: unknown_class(&config.relabel.unknown_class, &taxonomy)?,
@@ -143,6 +162,27 @@ impl Rules {
     }
 }
 
+fn mesh_rules(table: &MeshTable, taxonomy: &Taxonomy) -> Result<MeshRules, Fault> {
+    let class = match table.class.as_str() {
+        "auto" => taxonomy.first_of(&taxonomy.deformable),
+        "none" => None,
+        name => Some(class_named(name, "meshes.class", "\"auto\"", taxonomy)?),
+    };
+    let align = AlignSettings {
+        max_pair_m: table.max_pair_m,
+        point_error_m: table.point_error_m,
+        mesh_error_m: table.mesh_error_m,
+        mesh_error_rad: table.mesh_error_rad,
+    };
+    Ok(MeshRules {
+        frame: table.frame,
+        class,
+        align: table.align.then_some(align),
+        min_points: table.min_points,
+        max_residual_m: table.max_residual_m,
+    })
+}
+
 fn corners(ego_box: &EgoBox) -> Option<(Point3<f64>, Point3<f64>)> {
     match ego_box {
         EgoBox::Corners { min, max } => Some(((*min).into(), (*max).into())),
@@ -154,10 +194,16 @@ fn unknown_class(name: &str, taxonomy: &Taxonomy) -> Result<Option<ClassId>, Fau
     match name {
         "drop" => Ok(None),
         "taxonomy" => Ok(taxonomy.unknown),
-        name => taxonomy.class_named(name).map(Some).ok_or_else(|| {
-            let expected =
-                format!("\"taxonomy\", \"drop\", or one of {}", taxonomy.names.join(", "));
-            Fault::new("config", "relabel.unknown_class", expected, format!("\"{name}\""))
-        }),
+        name => {
+            class_named(name, "relabel.unknown_class", "\"taxonomy\", \"drop\"", taxonomy).map(Some)
+        }
     }
+}
+
+/// The class that a key names, where no other `words` stand for one.
+fn class_named(name: &str, key: &str, words: &str, taxonomy: &Taxonomy) -> Result<ClassId, Fault> {
+    taxonomy.class_named(name).ok_or_else(|| {
+        let expected = format!("{words}, or one of {}", taxonomy.names.join(", "));
+        Fault::new("config", key, expected, format!("\"{name}\""))
+    })
 }

@@ -79,6 +79,7 @@ mod rotation;
 mod schedule;
 mod shape;
 mod shipped;
+mod skin;
 mod standing;
 mod swing;
 mod towed;
@@ -88,7 +89,7 @@ mod world;
 mod world_file;
 mod write;
 
-pub use annotator::{Annotator, BoxTime, LabelledSweeps, LoggedPoses, Unboxed};
+pub use annotator::{Annotator, BoxTime, DrawnMesh, LabelledSweeps, LoggedPoses, Unboxed};
 pub use camera::WorldCamera;
 pub use clock::Clock;
 pub use drive::Drive;
@@ -111,6 +112,6 @@ pub use world::World;
 #[cfg(feature = "waymo-v2")]
 pub use write::write_waymo_v2;
 pub use write::{
-    Images, Output, Written, write_cloud, write_coda, write_masks, write_mcap, write_nuscenes,
-    write_semantickitti, write_waymo,
+    Images, MeshNames, Output, Written, write_cloud, write_coda, write_masks, write_mcap,
+    write_meshes, write_nuscenes, write_semantickitti, write_waymo,
 };

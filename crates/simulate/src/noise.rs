@@ -28,6 +28,8 @@ pub(crate) enum Kind {
     Drift,
     /// A pixel of an exposure.
     Pixel,
+    /// A mover's mesh at a keyframe.
+    Mesh,
 }
 
 impl Chance {

@@ -24,6 +24,9 @@ pub(crate) struct SimulateArgs {
     /// Write masks of classes and instances of these exposures into `masks`, whatever the format.
     #[arg(long)]
     pub(crate) masks: bool,
+    /// Write the surfaces of people at keyframes too, as OBJ files below `meshes` (nuscenes, mcap).
+    #[arg(long)]
+    pub(crate) meshes: bool,
     /// nuScenes: so many scenes, each with a seed of its own.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=9999))]
     pub(crate) scenes: u32,

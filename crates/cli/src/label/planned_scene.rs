@@ -13,6 +13,7 @@ use occlabel_simulate::World;
 
 use crate::label::findings::Findings;
 use crate::label::job::Job;
+use crate::label::meshes::PlannedMeshes;
 use crate::label::scene_run::Finished;
 use crate::label::targets::LabelledGrid;
 use crate::lacks::lacks;
@@ -30,6 +31,8 @@ pub(crate) struct PlannedScene {
     pub(crate) files: Vec<(String, u64)>,
     /// The masks that paint its points.
     pub(crate) masks: Vec<InputRecord>,
+    /// Who is known by their surface.
+    pub(crate) meshes: PlannedMeshes,
     /// How many keyframes at once, and in how many shards of rays each.
     pub(crate) at_once: (usize, usize),
     /// An upper estimate of the memory that takes.
@@ -75,15 +78,19 @@ impl PlannedScene {
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
         let masks = masks(job, &scene, findings).map_err(|fault| Refused::Broken(vec![fault]))?;
+        let meshes = PlannedMeshes::plan(job, &scene, findings);
+        let meshes = meshes.map_err(|fault| Refused::Broken(vec![fault]))?;
         let points = job.opened.source.scene_points(&scene);
-        let model = memory_model(job, &scene, points);
+        let model = memory_model(job, &scene, points, &meshes);
         let at_once = fit(job, &scene, &model)?;
         Ok(Some(Self {
             work: work(job, &scene, points, &wanted),
             name: name.to_owned(),
-            record: scene_record(job, &scene).map_err(|fault| Refused::Broken(vec![fault]))?,
+            record: scene_record(job, &scene, &meshes)
+                .map_err(|fault| Refused::Broken(vec![fault]))?,
             infos: job.targets.infos(&scene).map_err(|fault| Refused::Broken(vec![fault]))?,
             wanted,
+            meshes,
             at_once,
             memory_bytes: model.bytes(at_once.0, at_once.1),
             files: inventory.present,
@@ -246,11 +253,11 @@ fn work(job: &Job, scene: &Scene, points: u64, wanted: &BTreeSet<String>) -> Vec
 }
 
 /// What memory labelling takes, reading included.
-fn memory_model(job: &Job, scene: &Scene, points: u64) -> MemoryModel {
+fn memory_model(job: &Job, scene: &Scene, points: u64, meshes: &PlannedMeshes) -> MemoryModel {
     let evidence = job.args.evidence || job.targets.need_evidence();
     let reading_bytes = disk::reading_bytes(&job.args.log.input, job.threads);
     let model = MemoryModel::new(points, job.targets.largest(), scene.cameras.len(), evidence)
-        .beside(reading_bytes);
+        .beside(reading_bytes + meshes.memory_bytes());
     if job.opened.rules.window.radius_m.is_some() { model.cutting() } else { model }
 }
 
@@ -272,7 +279,7 @@ fn available_memory_bytes() -> Option<u64> {
     Some(kib * 1024)
 }
 
-fn scene_record(job: &Job, scene: &Scene) -> Result<SceneRecord, Fault> {
+fn scene_record(job: &Job, scene: &Scene, meshes: &PlannedMeshes) -> Result<SceneRecord, Fault> {
     let names = &job.opened.rules.taxonomy.names;
     let track = |track: &BoxTrack| TrackRecord {
         index: track.id.0,
@@ -280,9 +287,10 @@ fn scene_record(job: &Job, scene: &Scene) -> Result<SceneRecord, Fault> {
         class: track.class().map(|class| names[class.index()].clone()),
         category: track.category.clone(),
     };
+    let tracks = scene.tracks.iter().map(track);
     Ok(SceneRecord {
         cameras: scene.cameras.iter().map(|camera| camera.name.clone()).collect(),
-        tracks: scene.tracks.iter().map(track).collect(),
+        tracks: tracks.chain(meshes.own_tracks(scene, names, job)).collect(),
         keyframes: scene.keyframes.iter().map(|keyframe| keyframe.token.clone()).collect(),
         poses: scene.keyframes.iter().map(|keyframe| pose_record(scene, keyframe)).collect(),
         world: world_hash(&job.args.log.input, &scene.name)?,

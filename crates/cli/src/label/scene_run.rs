@@ -101,10 +101,12 @@ impl SceneRun<'_> {
         findings: &mut Findings,
     ) -> Result<SceneDone, Stop> {
         let (meter, lenses) = (&StageMeter::new(), Lenses::default());
-        let (aggregated, book) = self.aggregate(scene, meter, &mut done.tally)?;
+        let (mut aggregated, book) = self.aggregate(scene, meter, &mut done.tally)?;
         if self.interrupt.is_raised() {
             return Ok(done);
         }
+        let meshes = &self.planned.meshes;
+        done.tally.meshes = meshes.embody(self.job, scene, &mut aggregated, findings)?;
         self.tell(&book, &done.tally, findings);
         todo.retain(|keyframe| self.is_readable(scene, keyframe, &book, findings));
         let (losses, aggregated) = (findings.losses_of(&scene.name), &aggregated);

@@ -94,6 +94,7 @@ pub(crate) const FIGURES: &[Figure] = &[
         value: distance_excess,
         count: |basis| basis.counts.size(Size::OccupiedDistance).count(),
     },
+    share!("PI", "people_iou", "people: overlap of label and truth", OCCUPIED, false, People),
     share!("A2", "surface_recall", "5 rays end there: is occupied", SURFACE, true, SurfaceRecall),
     share!("A2d", "surface_recall_dense", "... of a 4 times denser pattern", SURFACE, true, SurfaceRecallDense),
     Figure {
@@ -129,6 +130,7 @@ pub(crate) const FIGURES: &[Figure] = &[
     size!("FEc", "flow_error_right_class_mps", "... mean where the class is right", MOTION, mean, FlowErrorRightClass),
     share!("FEn", "flow_missing", "truth has one, the label has not", MOTION, true, FlowMissing),
     share!("FEs", "static_flow", "stands still, labelled as moving", MOTION, true, StaticFlow),
+    size!("PV", "people_speed_error_mps", "people: mean velocity in x, y", MOTION, mean, PeopleSpeedError),
 ];
 
 fn asked(shares: &[Share]) -> u64 {

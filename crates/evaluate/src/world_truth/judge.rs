@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::camera::exact_camera_mask;
 use super::door::check;
 use super::objects::objects;
+use super::people::{is_of_people, speed_errors};
 use super::scale::Scale;
 use super::tally::{Question, Ring, Size, Tally};
 
@@ -57,7 +58,11 @@ pub fn judge(labels: &JudgedLabels, known: &KnownWorld, scale: &Scale) -> Result
         has_ends: known.truth.values().iter().any(|truth| truth.camera_ends > 0),
         scale,
     };
-    Ok(Tally::of_keyframe(scale, bench.rings(), objects(labels, known, scale)))
+    let mut rings = bench.rings();
+    for (ring, class, error_mps) in speed_errors(labels, known, scale) {
+        rings[ring].measure(Size::PeopleSpeedError, Some(class), error_mps);
+    }
+    Ok(Tally::of_keyframe(scale, rings, objects(labels, known, scale)))
 }
 
 /// Everything that a voxel's judgement needs.
@@ -117,6 +122,7 @@ impl Bench<'_> {
     fn voxel(&self, flat: usize, ring: &mut Ring) {
         let pair = self.pair(flat);
         self.occupied(&pair, ring);
+        self.people(&pair, ring);
         surface(&pair, ring);
         class(&pair, ring);
         air(&pair, ring);
@@ -150,6 +156,13 @@ impl Bench<'_> {
             let is_near = truth.clearance.is_some_and(|gap| f64::from(gap) <= reach);
             ring.count(Question::OccupiedPrecisionNoise, pair.label, is_right || is_near);
         }
+    }
+
+    /// PI, seen or not.
+    fn people(&self, pair: &Pair, ring: &mut Ring) {
+        let deformable = &self.scale.deformable;
+        let is_labelled = pair.label.is_some_and(|class| deformable.contains(class));
+        ring.overlap(Question::People, is_labelled, is_of_people(pair.truth, deformable));
     }
 
     /// A6, A6c and A6g. Both camera masks leave out what the labels call unobserved.

@@ -28,6 +28,8 @@ use super::written::{Images, Written};
 pub(super) use calibrations::add_optics;
 use tables::Tables;
 
+pub(super) use scene::sample_token;
+
 /// The folder of the tables, which makes the log one.
 const VERSION: &str = "v1.0-sim";
 
