@@ -10,11 +10,12 @@ use crate::args::LogArgs;
 use crate::format_flags::name;
 
 /// Rules of faults that a folder of another format breaks.
-const LAYOUTS: [&str; 7] = [
+const LAYOUTS: [&str; 8] = [
     "version-folder",
     "waymo-layout",
     "semantickitti-layout",
     "mcap-files",
+    "cloud-layout",
     "av2-layout",
     "av2",
     "coda-layout",

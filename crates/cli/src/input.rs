@@ -8,19 +8,21 @@ use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_disk as disk;
 use occlabel_logs::{
-    Argoverse2Log, CodaLog, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions,
-    PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog,
-    TimeSource, WaymoLog,
+    Argoverse2Log, CloudLog, CloudOptions, CodaLog, Kitti360Log, Masks, McapLog, McapOptions,
+    MeshFolder, NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions,
+    ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{
     Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
     shipped_taxonomy,
 };
+use occlabel_voxelize::Surfels;
 
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
 use crate::format_flags::check_flags;
 use crate::format_hint::{check_input, with_format};
+use crate::masks::open_masks;
 use crate::presets::unknown_preset;
 use crate::urls::check_url;
 
@@ -34,8 +36,12 @@ pub(crate) struct Opened {
     /// BLAKE3 of the taxonomy's file.
     pub(crate) taxonomy_hash: String,
     pub(crate) rules: Rules,
+    /// The masks that paint; none if there are none.
+    pub(crate) masks: Option<Masks>,
     /// Whether the configuration names the lidar that keyframes refer to.
     pub(crate) names_lidar: bool,
+    /// Who is known by their surface.
+    pub(crate) meshes: Option<MeshFolder>,
 }
 
 /// Opens the log and resolves the configuration against it.
@@ -68,25 +74,24 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let names_lidar = config.keyframes.reference_lidar != "auto";
     let stop = |fault| usage_or_failed(with_format(fault, log));
     let autos = autos(log, scenes.as_ref(), &mut config.reader).map_err(stop)?;
+    let meshes = open_meshes(&mut config, &log.input).map_err(Stop::usage)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
+    let unknown_as = unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class);
+    let masks = open_masks(&log.input, &mut config.paint, &taxonomy, unknown_as);
+    let masks = masks.map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
-    let options = ReadOptions {
-        scenes,
-        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class),
-        taxonomy,
-        keyframes: config.keyframes.clone(),
-    };
-    let mcap = config.reader.mcap.clone();
-    let source = open_format(log, options, mcap).map_err(stop)?;
-    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, names_lidar })
+    let options = ReadOptions { scenes, unknown_as, taxonomy, keyframes: config.keyframes.clone() };
+    let source = open_format(log, options, &config).map_err(stop)?;
+    let preset = None;
+    Ok(Opened { source, preset, config, taxonomy_hash, rules, masks, meshes, names_lidar })
 }
 
 /// Opens a log by its format.
 fn open_format(
     log: &LogArgs,
     read: ReadOptions,
-    mcap: McapSettings,
+    config: &Config,
 ) -> Result<Box<dyn SceneSource>, Fault> {
     match log.format {
         Format::Nuscenes => {
@@ -103,10 +108,27 @@ fn open_format(
             SemanticKittiLog::open(&log.input, read).map(|log| Box::new(log) as _)
         }
         Format::Mcap => {
-            let options = mcap_options(log, read, mcap);
+            let options = mcap_options(log, read, config.reader.mcap.clone());
             McapLog::open(&log.input, options).map(|log| Box::new(log) as _)
         }
+        Format::Cloud => {
+            let options = cloud_options(read, config)?;
+            CloudLog::open(&log.input, options).map(|log| Box::new(log) as _)
+        }
     }
+}
+
+/// The folder of meshes, if there is any; its name takes the place of its path.
+fn open_meshes(config: &mut Config, root: &Path) -> Result<Option<MeshFolder>, Fault> {
+    let is_there = disk::is_dir(&root.join("meshes"));
+    let folder = match config.meshes.folder.as_str() {
+        "none" => None,
+        "auto" => is_there.then_some("meshes"),
+        path => Some(path),
+    };
+    let folder = folder.map(|folder| MeshFolder::open(root, folder)).transpose()?;
+    config.meshes.folder = folder.as_ref().map_or("none", MeshFolder::name).to_owned();
+    Ok(folder)
 }
 
 /// What the format itself says where the configuration says `"auto"`; tables of other formats go,
@@ -123,6 +145,10 @@ fn autos(
         Format::Av2 => Argoverse2Log::format_defaults(),
         Format::Coda => CodaLog::format_defaults(),
         Format::Semantickitti => SemanticKittiLog::format_defaults(),
+        Format::Cloud => {
+            tables.cloud = given.cloud;
+            CloudLog::format_defaults()
+        }
         Format::Mcap => {
             let (defaults, mut mcap) = McapLog::resolve(&log.input, scenes, &given.mcap)?;
             let taxonomy = std::mem::replace(&mut mcap.taxonomy, file_name(&given.mcap.taxonomy));
@@ -157,6 +183,15 @@ fn mcap_options(log: &LogArgs, read: ReadOptions, settings: McapSettings) -> Mca
     McapOptions { read, settings, time_source, recover: log.recover }
 }
 
+/// Surfels become points so near to each other that at least two of them fit beside each other into each
+/// voxel of the configured grid.
+fn cloud_options(read: ReadOptions, config: &Config) -> Result<CloudOptions, Fault> {
+    let is_spread = config.voxelize.surfels == Surfels::Extent;
+    let smallest_m = config.grid_spec()?.size_m().min();
+    let surfel_spacing_m = is_spread.then_some(smallest_m / 2.0);
+    Ok(CloudOptions { read, settings: config.reader.cloud.clone(), surfel_spacing_m })
+}
+
 /// What the user named wrongly is a matter of usage; what the log holds wrongly is not.
 fn usage_or_failed(fault: Fault) -> Stop {
     match fault.rule {
@@ -169,6 +204,7 @@ fn usage_or_failed(fault: Fault) -> Stop {
         | "coda-layout"
         | "semantickitti-layout"
         | "mcap-files"
+        | "cloud-layout"
         | "mcap-clouds" => Stop::usage(fault),
         _ => fault.into(),
     }
@@ -249,11 +285,11 @@ pub(crate) fn taxonomy_of(file: &str) -> Result<(Taxonomy, String), Fault> {
 }
 
 /// A path without its folders, which would tell of the machine.
-fn file_name(file: &str) -> String {
+pub(crate) fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or(file.into(), |name| name.to_string_lossy().into_owned())
 }
 
-fn read_text(path: &Path) -> Result<String, Fault> {
+pub(crate) fn read_text(path: &Path) -> Result<String, Fault> {
     disk::read_to_string(path).map_err(|error| {
         Fault::new(
             "config-file",

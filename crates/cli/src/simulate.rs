@@ -5,8 +5,9 @@ use std::path::Path;
 use occlabel_core::{Fault, Taxonomy};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{
-    Drive, Images, Output, WORLDS, World, Written, shipped_world, world_text_with, write_coda,
-    write_mcap, write_nuscenes, write_semantickitti, write_waymo,
+    Drive, Images, MeshNames, Output, WORLDS, World, Written, shipped_world, world_text_with,
+    write_cloud, write_coda, write_masks, write_mcap, write_meshes, write_nuscenes,
+    write_semantickitti, write_waymo,
 };
 
 use crate::args::{Format, ImagesArg, SimulateArgs, WrittenFormat};
@@ -15,6 +16,7 @@ use crate::exit::{Outcome, Stop};
 use crate::format_flags::name;
 
 pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Stop> {
+    let mesh_names = mesh_names(args).map_err(Stop::usage)?;
     let worlds = worlds(args).map_err(Stop::usage)?;
     let taxonomy = taxonomy(&worlds[0].1).map_err(Stop::usage)?;
     let drive = |(_, world): &(String, World)| Drive::new(world.clone(), &taxonomy);
@@ -23,8 +25,13 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
     let output = Output::create(&args.output).map_err(usage_or_failed)?;
     write_truth(&worlds, &output)?;
     let (written, last) = write(args, &drives, &taxonomy, &output).map_err(usage_or_failed)?;
+    // nuScenes' own writer has them beside its images.
+    if args.masks && args.format != WrittenFormat::Nuscenes {
+        drives.iter().try_for_each(|drive| write_masks(drive, images(args), &output).map(drop))?;
+    }
+    let meshes = mesh_names.map(|names| write_meshes(&drives, names, &output)).transpose()?;
     let size = output.finish(&last)?;
-    tell(&written, size, console);
+    tell(&written, meshes, size, console);
     console.result(&format!("label it with  {}", label_line(args, &worlds[0].1)));
     Ok(Outcome::Complete)
 }
@@ -95,6 +102,14 @@ fn write_truth(worlds: &[(String, World)], output: &Output) -> Result<(), Fault>
     }
 }
 
+fn images(args: &SimulateArgs) -> Images {
+    match args.images {
+        ImagesArg::None => Images::None,
+        ImagesArg::Keyframes => Images::Keyframes,
+        ImagesArg::All => Images::All,
+    }
+}
+
 /// Writes the log, and tells the entry to finish it with.
 fn write(
     args: &SimulateArgs,
@@ -102,11 +117,7 @@ fn write(
     taxonomy: &Taxonomy,
     output: &Output,
 ) -> Result<(Written, String), Fault> {
-    let images = match args.images {
-        ImagesArg::None => Images::None,
-        ImagesArg::Keyframes => Images::Keyframes,
-        ImagesArg::All => Images::All,
-    };
+    let images = images(args);
     match args.format {
         WrittenFormat::Nuscenes => write_nuscenes(drives, taxonomy, images, output)
             .map(|(written, last)| (written, last.to_owned())),
@@ -116,6 +127,7 @@ fn write(
             write_coda(&drives[0], images, output).map(|(written, last)| (written, last.to_owned()))
         }
         WrittenFormat::Mcap => write_mcap(&drives[0], taxonomy, images, output),
+        WrittenFormat::Cloud => write_cloud(&drives[0], taxonomy, output),
         WrittenFormat::Waymo => write_waymo(&drives[0], output),
         #[cfg(feature = "waymo-v2")]
         WrittenFormat::WaymoV2 => occlabel_simulate::write_waymo_v2(&drives[0], output),
@@ -127,8 +139,21 @@ fn write(
     }
 }
 
-fn tell(written: &Written, (files, bytes): (usize, u64), console: &Console) {
+/// What names the files of meshes, if they are asked for.
+fn mesh_names(args: &SimulateArgs) -> Result<Option<MeshNames>, Fault> {
+    match args.format {
+        _ if !args.meshes => Ok(None),
+        WrittenFormat::Nuscenes => Ok(Some(MeshNames::Nuscenes)),
+        WrittenFormat::Mcap => Ok(Some(MeshNames::Mcap)),
+        _ => Err(Fault::new("usage", "--meshes", "--format nuscenes or mcap", "another format")),
+    }
+}
+
+fn tell(written: &Written, meshes: Option<usize>, (files, bytes): (usize, u64), console: &Console) {
     let Written { scenes, sweeps, labelled, points, keyframes, boxes, images } = written;
+    if let Some(meshes) = meshes {
+        console.result(&format!("meshes     {meshes}"));
+    }
     for line in [
         format!("scenes     {scenes}"),
         format!("sweeps     {sweeps}, {labelled} labelled"),
@@ -147,12 +172,17 @@ fn tell(written: &Written, (files, bytes): (usize, u64), console: &Console) {
 /// nuScenes' taxonomy; the others have words of their own.
 fn label_line(args: &SimulateArgs, world: &World) -> String {
     let input = Path::new(&args.output).display();
+    if args.format == WrittenFormat::Cloud {
+        let line = "occlabel label --format cloud --preset gs-occ3d";
+        return format!("{line} --input {input} --output LABELS");
+    }
     let (format, has_own_names) = match args.format {
         WrittenFormat::Nuscenes => (Format::Nuscenes, true),
         WrittenFormat::Mcap => (Format::Mcap, true),
         WrittenFormat::Semantickitti => (Format::Semantickitti, false),
         WrittenFormat::Coda => (Format::Coda, false),
         WrittenFormat::Waymo | WrittenFormat::WaymoV2 => (Format::Waymo, false),
+        WrittenFormat::Cloud => (Format::Cloud, false),
     };
     let format = name(format);
     let line = format!("occlabel label --format {format} --input {input} --output LABELS");

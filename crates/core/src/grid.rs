@@ -7,6 +7,8 @@
 //!           ^ centre of voxel i: u = i + 0.5
 //! ```
 
+use std::ops::Range;
+
 use nalgebra::{Point3, Vector3};
 
 use crate::{BUNDLE, Fault, RigidMap};
@@ -221,6 +223,17 @@ impl GridSpec {
         (0..self.len()).map(|flat| self.voxel_at(flat))
     }
 
+    /// The voxels that reach into the box between two points of the grid frame, axis by axis, cut to the
+    /// grid.
+    pub fn voxels_between(&self, low: &Point3<f64>, high: &Point3<f64>) -> [Range<i64>; 3] {
+        let (low, high) = (self.to_voxel_units(low), self.to_voxel_units(high));
+        std::array::from_fn(|axis| {
+            let n = self.shape[axis] as i64;
+            let first = (low[axis].floor() as i64).clamp(0, n);
+            first..(high[axis].floor() as i64).saturating_add(1).clamp(first, n)
+        })
+    }
+
     /// Voxels whose centres can lie within `radius_m` of a point: a box of indices, cut to the grid.
     pub fn voxels_near(
         &self,
@@ -228,13 +241,7 @@ impl GridSpec {
         radius_m: f64,
     ) -> impl Iterator<Item = VoxelIndex> + use<> {
         let reach = Vector3::repeat(radius_m);
-        let (low, high) = (self.to_voxel_units(&(p - reach)), self.to_voxel_units(&(p + reach)));
-        let span = |axis: usize| {
-            let n = self.shape[axis] as i64;
-            (low[axis].floor() as i64).clamp(0, n)
-                ..(high[axis].floor() as i64).saturating_add(1).clamp(0, n)
-        };
-        let (xs, ys, zs) = (span(0), span(1), span(2));
+        let [xs, ys, zs] = self.voxels_between(&(p - reach), &(p + reach));
         xs.flat_map(move |x| {
             let zs = zs.clone();
             ys.clone().flat_map(move |y| zs.clone().map(move |z| VoxelIndex([x, y, z])))

@@ -1,5 +1,7 @@
 //! One instant of a scene, in the frame of its grid.
 
+use std::borrow::Cow;
+
 use nalgebra::Point3;
 
 use crate::{
@@ -8,10 +10,10 @@ use crate::{
 };
 
 /// Everything that stands in a grid at one instant: views of the scene's clouds, each with the pose
-/// that brings it into the grid frame. Nothing is copied.
+/// that brings it into the grid frame. Nothing is copied but what is cut.
 ///
 /// What is occupied and what was hit are both read from here, so they cannot disagree.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Instant<'a> {
     /// The keyframe's time.
     pub time: Timestamp,
@@ -19,8 +21,8 @@ pub struct Instant<'a> {
     pub grid_from_world: Pose,
     /// Where the reference lidar stands, grid frame.
     pub reference_lidar: Point3<f64>,
-    /// Background sweeps of the window, in order.
-    pub background: Vec<&'a BackgroundSweep<ClassId>>,
+    /// Background sweeps of the window, in order: whole, or cut to what is near enough.
+    pub background: Vec<Cow<'a, BackgroundSweep<ClassId>>>,
     /// Object sweeps of the window, in order.
     pub objects: Vec<PlacedObject<'a>>,
     /// Tracks that stand at this instant.
@@ -28,7 +30,7 @@ pub struct Instant<'a> {
 }
 
 /// The points of a track in one sweep, and where they belong now.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PlacedObject<'a> {
     /// The points, in box coordinates.
     pub object: &'a ObjectSweep,
@@ -61,6 +63,13 @@ impl<'a> Instant<'a> {
         (background + objects) as u64
     }
 
+    /// The same without the points of some tracks.
+    pub fn without(&self, tracks: &[TrackId]) -> Self {
+        let mut rest = self.clone();
+        rest.objects.retain(|placed| !tracks.contains(&placed.object.track));
+        rest
+    }
+
     /// The instant of a whole scene in which nothing moves, its grid being world: for tests and
     /// examples.
     pub fn still(scene: &'a AggregatedScene<ClassId>) -> Self {
@@ -68,7 +77,7 @@ impl<'a> Instant<'a> {
             time: Timestamp::default(),
             grid_from_world: Pose::identity(),
             reference_lidar: Point3::origin(),
-            background: scene.background.iter().collect(),
+            background: scene.background.iter().map(Cow::Borrowed).collect(),
             objects: Vec::new(),
             standing: Vec::new(),
         }

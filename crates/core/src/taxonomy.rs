@@ -50,6 +50,12 @@ impl Taxonomy {
         Some(ClassId(at as u8))
     }
 
+    /// Of a set of classes the one that comes first in `priority`.
+    pub fn first_of(&self, classes: &ClassSet) -> Option<ClassId> {
+        let all = (0..self.names.len()).map(|at| ClassId(at as u8));
+        all.filter(|class| classes.contains(*class)).min_by_key(|class| self.rank[class.index()])
+    }
+
     /// The classes that some box category means.
     pub fn boxed(&self) -> ClassSet {
         self.boxes

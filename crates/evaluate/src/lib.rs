@@ -38,6 +38,7 @@
 //!     classes: vec!["building".into()],
 //!     free: 17,
 //!     flat: ClassSet::default(),
+//!     deformable: ClassSet::default(),
 //!     ring_m: RINGS_M.to_vec(),
 //!     noise_sigma_m: 0.0,
 //! };
@@ -57,6 +58,7 @@ pub mod compare;
 mod exact_mean;
 mod exact_sum;
 pub mod held_out;
+pub mod painted;
 pub mod rays;
 pub mod scores;
 mod world_truth;

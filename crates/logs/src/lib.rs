@@ -21,6 +21,7 @@
 
 mod argoverse2;
 mod check;
+mod cloud;
 mod coda;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
@@ -31,7 +32,9 @@ mod inventory;
 mod keyframes;
 mod kitti360;
 mod kitti_labels;
+mod masks;
 mod mcap;
+mod meshes;
 #[cfg(test)]
 mod mutation_tests;
 mod names;
@@ -51,12 +54,15 @@ mod wire;
 
 pub use argoverse2::Argoverse2Log;
 pub use check::{Finding, SceneSurvey, Severity, SweepSurvey, UnknownSum, check_poses};
+pub use cloud::{CloudLog, CloudOptions};
 pub use coda::CodaLog;
 pub use formats::looks_like;
 pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
+pub use masks::{MaskFile, Masks, SceneMasks};
 pub use mcap::{McapLog, McapOptions, TimeSource};
+pub use meshes::{MeshFile, MeshFolder};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};
 pub use options::{ReadOptions, unknown_hint, without_stand_in};
 pub use points::PointColumns;

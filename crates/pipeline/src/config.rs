@@ -1,7 +1,9 @@
 //! The configuration: every key of labels.md section 14, under its name there.
 
-use occlabel_annotate::{BoxSettings, GhostClasses};
-use occlabel_core::{Fault, GridSpec, KeyframeSettings, McapSettings, Taxonomy};
+use occlabel_annotate::{BoxSettings, GhostClasses, PaintSettings};
+use occlabel_core::{
+    CloudSettings, Fault, GridSpec, KeyframeSettings, MaskClasses, McapSettings, Taxonomy,
+};
 use occlabel_occlusion::OcclusionSettings;
 use occlabel_raycast::{RaySettings, StateSettings};
 use occlabel_voxelize::VoteSettings;
@@ -21,6 +23,8 @@ pub struct Config {
     pub boxes: BoxSettings,
     /// How sweeps are sorted and summed.
     pub aggregate: AggregateTable,
+    /// How masks of images give points a class.
+    pub paint: PaintTable,
     /// How unlabelled points get a class.
     pub relabel: RelabelTable,
     /// How a voxel gets its class.
@@ -29,6 +33,8 @@ pub struct Config {
     pub raycast: RaySettings,
     /// How counts are judged.
     pub states: StateSettings,
+    /// Whose surface is known.
+    pub meshes: MeshTable,
     /// What cameras see.
     pub occlusion: OcclusionSettings,
     /// What the classes are.
@@ -42,6 +48,8 @@ pub struct Config {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReaderTables {
+    /// Clouds of reconstructions.
+    pub cloud: CloudSettings,
     /// MCAP logs.
     pub mcap: McapSettings,
 }
@@ -103,6 +111,8 @@ pub struct AggregateTable {
     pub window_s: f64,
     /// The same for tracks whose shape changes, seconds.
     pub deformable_window_s: f64,
+    /// Background points farther from a keyframe's pose do not serve it, metres, or `"none"`.
+    pub radius_m: Limit,
 }
 
 /// The ego vehicle's body: `"auto"`, `"none"`, or `{ min, max }` in the ego frame, metres.
@@ -131,6 +141,37 @@ pub enum EgoWord {
     Auto,
     /// Nothing is dropped.
     None,
+}
+
+/// The `[paint]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaintTable {
+    /// The folder of class masks, below the log's root unless absolute; `"none"`, or `"auto"`: the
+    /// folder `masks` of the log if there is one.
+    pub masks: String,
+    /// What their pixels mean.
+    pub classes: MaskClasses,
+    /// Pixels within so many of one of another class give no point a class.
+    pub borders_px: u32,
+    /// An exposure paints the sweeps that are at most so far from it in time, seconds.
+    pub max_dt_s: f64,
+    /// What is farther behind the nearest return of its pixel is hidden, metres.
+    pub occlusion_m: f64,
+    /// A return hides what is behind it in so many pixels to each side of its own.
+    pub splat_px: u32,
+}
+
+impl PaintTable {
+    /// The word for no masks.
+    pub const NONE: &str = "none";
+
+    /// How masks paint; `None` if there are none.
+    pub(crate) fn settings(&self) -> Option<PaintSettings> {
+        let Self { max_dt_s, occlusion_m, splat_px, .. } = *self;
+        let settings = PaintSettings { max_dt_s, occlusion_m, splat_px };
+        (self.masks != Self::NONE).then_some(settings)
+    }
 }
 
 /// The `[relabel]` table.
@@ -163,6 +204,44 @@ pub enum Limit {
 pub enum NoLimit {
     /// Anything goes.
     None,
+}
+
+/// The `[meshes]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshTable {
+    /// `"none"`, `"auto"` (`meshes` below the log's root, if that is there), or a path from the root.
+    pub folder: String,
+    /// The frame of their vertices.
+    pub frame: MeshFrame,
+    /// The class of a mesh without a track: its name, or `"auto"`.
+    pub class: String,
+    /// Whether they are moved onto the points of their tracks.
+    pub align: bool,
+    /// Meshes with fewer points stay where they are.
+    pub min_points: usize,
+    /// Meshes whose points lie farther off in the mean are refused, metres.
+    pub max_residual_m: f64,
+    /// A point farther than this from a mesh has no say, metres.
+    pub max_pair_m: f64,
+    /// How far points lie off a right surface, metres.
+    pub point_error_m: f64,
+    /// How far meshes are off, metres.
+    pub mesh_error_m: f64,
+    /// The same of their attitude, radians.
+    pub mesh_error_rad: f64,
+}
+
+/// The frame of meshes' vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeshFrame {
+    /// The log's world.
+    World,
+    /// The ego frame of the keyframe's reference sweep.
+    Ego,
+    /// The lidar frame of that sweep.
+    Lidar,
 }
 
 /// The `[taxonomy]` table.
@@ -229,6 +308,11 @@ impl Config {
         if self.relabel.unknown_class == "taxonomy" {
             let name = taxonomy.unknown.map(|class| taxonomy.names[class.index()].clone());
             self.relabel.unknown_class = name.unwrap_or_else(|| "drop".into());
+        }
+        if self.meshes.class == "auto" {
+            let name = taxonomy.first_of(&taxonomy.deformable);
+            let name = name.map(|class| taxonomy.names[class.index()].clone());
+            self.meshes.class = name.unwrap_or_else(|| "none".into());
         }
     }
 

@@ -2,8 +2,8 @@
 
 use nalgebra::Point3;
 use occlabel_core::{
-    ClassId, Exposure, Fault, Keyframe, LIDAR_ORIGIN, PointCloud, PointLabel, Pose, Scene,
-    SweepHeader, Taxonomy, Timestamp, TrackId,
+    ClassId, ClassSet, Exposure, Fault, Keyframe, LIDAR_ORIGIN, PointCloud, PointLabel, PointsOf,
+    Pose, Scene, SweepHeader, Taxonomy, Timestamp, TrackId,
 };
 
 use crate::annotator::{Boxes, LabelledSweeps, LoggedPoses, Sightings};
@@ -25,6 +25,7 @@ pub struct Drive {
     scene: Scene,
     sweeps: Vec<SweepKey>,
     labels: Labels,
+    deformable: ClassSet,
     poses: LoggedPoses,
     sightings: Sightings,
     /// Of each mover, in the order of the world's.
@@ -59,7 +60,8 @@ impl Drive {
             ..Scene::default()
         };
         let tracks = world.movers.iter().map(|mover| track_named(&scene, &mover.name)).collect();
-        Ok(Self { world, scene, sweeps, labels, poses, sightings, tracks })
+        let deformable = taxonomy.deformable;
+        Ok(Self { world, scene, sweeps, labels, deformable, poses, sightings, tracks })
     }
 
     /// The world that is driven through.
@@ -212,6 +214,11 @@ impl Drive {
         (self.lidar(sweep), self.sweeps[sweep].number)
     }
 
+    /// Whether a mover's class is one whose shape changes.
+    pub(crate) fn is_deformable(&self, mover: usize) -> bool {
+        self.class_of(What::Mover(mover)).is_some_and(|class| self.deformable.contains(class))
+    }
+
     pub(crate) fn colour(&self, class: ClassId) -> [u8; 3] {
         self.labels.colour(class)
     }
@@ -261,6 +268,7 @@ fn headers(
                 LabelledSweeps::All => true,
                 LabelledSweeps::None => false,
             },
+            points_of: PointsOf::Moment,
         }
     };
     sweeps.iter().map(header).collect()

@@ -61,6 +61,11 @@ impl Hull {
         Nearest::of_surface(&self.surface, p, Some(self.contains(p))).0
     }
 
+    /// The corners and the triangles of its surface.
+    pub(crate) fn triangles(&self) -> (Vec<Vector>, Vec<[u32; 3]>) {
+        (self.surface.vertices().to_vec(), self.surface.indices().to_vec())
+    }
+
     pub(crate) fn bounds(&self) -> [Point3<f64>; 2] {
         let first = self.points[0];
         [

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 use occlabel_core::Fault;
-use parry3d_f64::math::Pose as ParryPose;
+use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::query::details::distance_composite_shape_shape;
 use parry3d_f64::query::{DefaultQueryDispatcher, PointQuery, RayCast};
 use parry3d_f64::shape::{Cuboid, TriMesh, TriMeshFlags};
@@ -56,6 +56,11 @@ impl Mesh {
             return 0.0;
         }
         surface_gap_m(&self.surface, cuboid, mesh_from_cuboid)
+    }
+
+    /// The corners and the triangles of its surface.
+    pub(crate) fn triangles(&self) -> (Vec<Vector>, Vec<[u32; 3]>) {
+        (self.surface.vertices().to_vec(), self.surface.indices().to_vec())
     }
 
     pub(crate) fn bounds(&self) -> [Point3<f64>; 2] {

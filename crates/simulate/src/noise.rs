@@ -26,6 +26,10 @@ pub(crate) enum Kind {
     Camera,
     /// The drift of the ego's pose.
     Drift,
+    /// A pixel of an exposure.
+    Pixel,
+    /// A mover's mesh at a keyframe.
+    Mesh,
 }
 
 impl Chance {

@@ -17,6 +17,7 @@ use crate::convert::{from_parry, ray_to_parry, to_parry};
 use crate::hull::Hull;
 use crate::mesh::Mesh;
 use crate::nearest::Nearest;
+use crate::skin::{self, Skin};
 use crate::{Impact, Ray};
 
 /// A shape as a world file says it; metres.
@@ -174,6 +175,23 @@ impl Shape {
             Form::Capsule(form) => convex(form),
             Form::Hull(form) => convex(form.as_ref()),
             Form::Mesh(form) => form.gap_m(cuboid, shape_from_cuboid),
+        }
+    }
+
+    /// The surface as triangles, with their corners on it.
+    pub(crate) fn surface(&self) -> Skin {
+        let of_mesh = |(corners, faces): (Vec<Vector>, Vec<[u32; 3]>)| {
+            (corners.into_iter().map(|corner| Point3::from(from_parry(corner))).collect(), faces)
+        };
+        match &self.0 {
+            Form::Box(form) => of_mesh(form.to_trimesh()),
+            Form::Cylinder(form) => skin::cylinder(form.radius_m, form.half_m),
+            Form::Capsule(form) => {
+                let [from, to] = [form.segment.a, form.segment.b].map(from_parry).map(Point3::from);
+                skin::capsule(&from, &to, form.radius)
+            }
+            Form::Hull(form) => of_mesh(form.triangles()),
+            Form::Mesh(form) => of_mesh(form.triangles()),
         }
     }
 

@@ -53,6 +53,8 @@ pub(crate) enum Format {
     Coda,
     /// MCAP files, one scene each: ROS 1, ROS 2 and Foxglove messages.
     Mcap,
+    /// Reconstructed clouds of points or surfels (PLY, PCD, LAS), with poses, cameras and tracks.
+    Cloud,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

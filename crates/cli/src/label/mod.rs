@@ -5,6 +5,7 @@ mod clock;
 pub(crate) mod findings;
 pub(crate) mod job;
 mod manifests;
+mod meshes;
 mod plan;
 pub(crate) mod planned_scene;
 mod read_ahead;

@@ -1,6 +1,7 @@
 //! What a run writes about itself: its record and the manifest.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use occlabel_core::{Fault, Taxonomy};
 use occlabel_dialects::Annotations;
@@ -8,6 +9,7 @@ use occlabel_labels::{
     ClassRecord, FileRecord, GridRecord, InputHashes, InputRecord, JournalEntry, Manifest, Program,
     RunRecord, SceneRecord, TaxonomyRecord, json_hash,
 };
+use occlabel_logs::MeshFolder;
 use occlabel_pipeline::Config;
 use serde_json::Value;
 
@@ -27,8 +29,23 @@ pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
         };
         scene.files.iter().map(record)
     });
-    let inputs = tables.chain(sweeps).collect::<Result<Vec<_>, Fault>>()?;
+    let masks = plan.scenes.iter().flat_map(|scene| scene.masks.iter().cloned().map(Ok));
+    let beside = masks.chain(mesh_records(job, plan));
+    let inputs = tables.chain(sweeps).chain(beside).collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config_json(&job.opened.config), inputs))
+}
+
+/// The files of meshes, which need not stand below the log's root.
+fn mesh_records<'a>(
+    job: &'a Job,
+    plan: &'a Plan,
+) -> impl Iterator<Item = Result<InputRecord, Fault>> + 'a {
+    let of_scene = |(root, scene): (&'a Path, &'a PlannedScene)| {
+        let record = move |path| Ok(InputRecord::of_sweep(root, path)?.of_scene(&scene.name));
+        scene.meshes.paths().map(record)
+    };
+    let folder = job.opened.meshes.iter().map(MeshFolder::root);
+    folder.flat_map(|root| plan.scenes.iter().map(move |scene| (root, scene))).flat_map(of_scene)
 }
 
 fn config_json(config: &Config) -> Value {

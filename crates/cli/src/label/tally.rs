@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::label::clock::StageCosts;
+use crate::label::meshes::MeshCounts;
 
 /// What a keyframe came out as: kept in the journal and the report, so that a later run that keeps
 /// the keyframe can tell of it.
@@ -55,6 +56,8 @@ pub(crate) struct Tally {
     /// Those of an earlier one.
     pub(crate) kept: usize,
     pub(crate) sweeps: SweepCounts,
+    /// What became of meshes.
+    pub(crate) meshes: MeshCounts,
     /// Points of the sweeps that were read.
     pub(crate) points_read: u64,
     /// Points dropped, by reason.
@@ -124,6 +127,7 @@ impl Tally {
         self.keyframes += other.keyframes;
         self.kept += other.kept;
         self.sweeps.add(&other.sweeps);
+        self.meshes.add(&other.meshes);
         self.points_read += other.points_read;
         self.dropped += other.dropped;
         self.points += other.points;
@@ -155,6 +159,7 @@ impl Tally {
             "keyframes": self.keyframes,
             "kept": self.kept,
             "sweeps": self.sweeps,
+            "meshes": self.meshes,
             "points_read": self.points_read,
             "dropped": drops_json(&self.dropped),
             "points": self.points,
@@ -173,6 +178,7 @@ impl Tally {
 fn class_from_json(class_from: &ClassCounts) -> Value {
     json!({
         "labels": class_from.labels,
+        "masks": class_from.masks,
         "boxes": class_from.boxes,
         "neighbours": class_from.neighbours,
         "unknown": class_from.unknown,

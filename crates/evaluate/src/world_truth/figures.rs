@@ -94,6 +94,7 @@ pub(crate) const FIGURES: &[Figure] = &[
         value: distance_excess,
         count: |basis| basis.counts.size(Size::OccupiedDistance).count(),
     },
+    share!("PI", "people_iou", "people: overlap of label and truth", OCCUPIED, false, People),
     share!("A2", "surface_recall", "5 rays end there: is occupied", SURFACE, true, SurfaceRecall),
     share!("A2d", "surface_recall_dense", "... of a 4 times denser pattern", SURFACE, true, SurfaceRecallDense),
     Figure {
@@ -123,11 +124,13 @@ pub(crate) const FIGURES: &[Figure] = &[
     share!("A6", "mask_lidar_iou", "lidar, with exact visibility", MASKS, false, MaskLidar),
     share!("A6c", "mask_camera_iou", "cameras, the rule on exact voxels", MASKS, false, MaskCamera),
     share!("A6g", "mask_camera_sight_iou", "cameras, true lines of sight", MASKS, false, MaskCameraSight),
+    share!("A10", "occupied_camera_iou", "occupied, where cameras look", MASKS, false, OccupiedCamera),
     size!("FE", "flow_error_mps", "end-point error: mean", MOTION, mean, FlowError),
     size!("FEp", "flow_error_p95_mps", "... 95th percentile", MOTION, percentile_95, FlowError),
     size!("FEc", "flow_error_right_class_mps", "... mean where the class is right", MOTION, mean, FlowErrorRightClass),
     share!("FEn", "flow_missing", "truth has one, the label has not", MOTION, true, FlowMissing),
     share!("FEs", "static_flow", "stands still, labelled as moving", MOTION, true, StaticFlow),
+    size!("PV", "people_speed_error_mps", "people: mean velocity in x, y", MOTION, mean, PeopleSpeedError),
 ];
 
 fn asked(shares: &[Share]) -> u64 {

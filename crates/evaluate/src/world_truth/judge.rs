@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::camera::exact_camera_mask;
 use super::door::check;
 use super::objects::objects;
+use super::people::{is_of_people, speed_errors};
 use super::scale::Scale;
 use super::tally::{Question, Ring, Size, Tally};
 
@@ -54,9 +55,14 @@ pub fn judge(labels: &JudgedLabels, known: &KnownWorld, scale: &Scale) -> Result
         truth: known.truth.values(),
         camera: exact_camera_mask(known, scale),
         has_sight: !known.eyes.is_empty() && known.truth.values().iter().any(|t| t.sight != 0),
+        has_ends: known.truth.values().iter().any(|truth| truth.camera_ends > 0),
         scale,
     };
-    Ok(Tally::of_keyframe(scale, bench.rings(), objects(labels, known, scale)))
+    let mut rings = bench.rings();
+    for (ring, class, error_mps) in speed_errors(labels, known, scale) {
+        rings[ring].measure(Size::PeopleSpeedError, Some(class), error_mps);
+    }
+    Ok(Tally::of_keyframe(scale, rings, objects(labels, known, scale)))
 }
 
 /// Everything that a voxel's judgement needs.
@@ -65,6 +71,7 @@ struct Bench<'a> {
     truth: &'a [VoxelTruth],
     camera: Option<Vec<bool>>,
     has_sight: bool,
+    has_ends: bool,
     scale: &'a Scale,
 }
 
@@ -115,10 +122,12 @@ impl Bench<'_> {
     fn voxel(&self, flat: usize, ring: &mut Ring) {
         let pair = self.pair(flat);
         self.occupied(&pair, ring);
+        self.people(&pair, ring);
         surface(&pair, ring);
         class(&pair, ring);
         air(&pair, ring);
         self.masks(flat, &pair, ring);
+        self.in_view(flat, &pair, ring);
         if let Some(flow) = self.labels.flow {
             motion(&pair, flow.values()[flat], ring);
         }
@@ -149,6 +158,13 @@ impl Bench<'_> {
         }
     }
 
+    /// PI, seen or not.
+    fn people(&self, pair: &Pair, ring: &mut Ring) {
+        let deformable = &self.scale.deformable;
+        let is_labelled = pair.label.is_some_and(|class| deformable.contains(class));
+        ring.overlap(Question::People, is_labelled, is_of_people(pair.truth, deformable));
+    }
+
     /// A6, A6c and A6g. Both camera masks leave out what the labels call unobserved.
     fn masks(&self, flat: usize, pair: &Pair, ring: &mut Ring) {
         let is_visible = pair.truth.ends > 0 || pair.truth.crossed;
@@ -160,6 +176,15 @@ impl Bench<'_> {
         if self.has_sight {
             let is_seen = pair.truth.sight != 0 && pair.is_observed;
             ring.overlap(Question::MaskCameraSight, pair.is_camera_seen, is_seen);
+        }
+    }
+
+    /// A10: what is labelled occupied where cameras look, and what they see well enough to ask for.
+    fn in_view(&self, flat: usize, pair: &Pair, ring: &mut Ring) {
+        let Some(camera) = self.camera.as_ref().filter(|_| self.has_ends) else { return };
+        let is_asked = pair.truth.solid > 0.0 && pair.truth.camera_ends >= OBSERVABLE_ENDS;
+        if is_asked || (camera[flat] && pair.label.is_some()) {
+            ring.count(Question::OccupiedCamera, None, pair.is_true_positive());
         }
     }
 }

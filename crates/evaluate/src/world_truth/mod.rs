@@ -7,6 +7,7 @@ mod histogram;
 mod judge;
 mod limits;
 mod objects;
+mod people;
 mod quality;
 mod scale;
 mod share;

@@ -16,6 +16,8 @@ pub struct Scale {
     pub free: u8,
     /// The ground's classes.
     pub flat: ClassSet,
+    /// Classes of those whose shape changes: people.
+    pub deformable: ClassSet,
     /// Outer radii of the range rings, rising, metres. What lies beyond the last is a ring too.
     pub ring_m: Vec<f64>,
     /// Standard deviation of the logged ranges, metres; 0 if they are exact.
@@ -30,6 +32,7 @@ impl Scale {
             classes: taxonomy.names.clone(),
             free: taxonomy.free,
             flat: taxonomy.flat,
+            deformable: taxonomy.deformable,
             ring_m: RINGS_M.to_vec(),
             noise_sigma_m: 0.0,
         }
@@ -41,6 +44,12 @@ impl Scale {
         let centre = self.spec.centre(VoxelIndex([x as i64, y as i64, 0]));
         let distance_m = (centre.x * centre.x + centre.y * centre.y).sqrt();
         self.ring_m.iter().filter(|&&outer_m| distance_m >= outer_m).count()
+    }
+
+    /// The ring of a voxel by its place.
+    pub(crate) fn ring_of(&self, flat: usize) -> usize {
+        let [_, ny, nz] = self.spec.shape();
+        self.ring(flat / nz / ny, flat / nz % ny)
     }
 
     /// How far noise may carry a return, in voxels of the shortest edge.
@@ -58,7 +67,8 @@ mod tests {
         let spec = GridSpec::new([0.0, -0.5, 0.0], [12.0, 0.5, 1.0], [1.0; 3]).unwrap();
         let (classes, flat) = (vec![], ClassSet::default());
         let ring_m = vec![1.5, 10.0];
-        let scale = Scale { spec, classes, free: 0, flat, ring_m, noise_sigma_m: 0.1 };
+        let scale =
+            Scale { spec, classes, free: 0, flat, deformable: flat, ring_m, noise_sigma_m: 0.1 };
         // Centres stand at 0.5, 1.5, ... 11.5 m on the x axis.
         let rings: Vec<usize> = (0..12).map(|x| scale.ring(x, 0)).collect();
         assert_eq!(rings, [0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2]);

@@ -27,8 +27,10 @@ pub(crate) enum Question {
     MaskLidar,
     MaskCamera,
     MaskCameraSight,
+    OccupiedCamera,
     FlowMissing,
     StaticFlow,
+    People,
 }
 
 /// A size that is measured at each voxel that it is asked of.
@@ -38,10 +40,11 @@ pub(crate) enum Size {
     SurfaceDistance,
     FlowError,
     FlowErrorRightClass,
+    PeopleSpeedError,
 }
 
-const QUESTIONS: usize = Question::StaticFlow as usize + 1;
-const SIZES: usize = Size::FlowErrorRightClass as usize + 1;
+const QUESTIONS: usize = Question::People as usize + 1;
+const SIZES: usize = Size::PeopleSpeedError as usize + 1;
 
 /// The counts of one ring and class.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

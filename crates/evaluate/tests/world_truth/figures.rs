@@ -222,3 +222,39 @@ fn a_mover_of_several_classes_counts_once() {
     assert_eq!(figure(of(CAR), "object_completeness"), (Some(0.5), 1));
     assert_eq!(figure(of(WALL), "object_completeness"), (None, 0));
 }
+
+#[test]
+fn pi_overlaps_people_seen_or_not_and_where_they_share_a_voxel() {
+    let shared = VoxelTruth {
+        classes: [ClassId(ROAD), ClassId(CAR)].into_iter().collect(),
+        ..surface(ROAD)
+    };
+    let unseen = VoxelTruth { ends: 0, ..surface(CAR) };
+    let quality = judge_row(&[
+        (occupied(CAR), surface(CAR)),
+        (occupied(CAR), shared),
+        (occupied(CAR), surface(ROAD)),
+        (occupied(ROAD), surface(CAR)),
+        (UNOBSERVED, unseen),
+        (occupied(ROAD), surface(ROAD)),
+        (EMPTY, air()),
+    ]);
+    assert_eq!(all(&quality, "people_iou"), (Some(0.4), 5), "CAR stands for people here");
+    assert_eq!(all(&judge_row(&[(EMPTY, air())]), "people_iou"), (None, 0));
+}
+
+#[test]
+fn pv_is_the_mean_of_each_person_before_the_mean_over_people() {
+    let nan = [f32::NAN; 3];
+    let quality = judge_row(&[
+        (moving(CAR, [1.5, 0.0, 9.0]), mover(1, [1.0, 0.0, 0.0])),
+        (moving(CAR, [0.5, 0.0, 0.0]), mover(1, [1.0, 0.0, 0.0])),
+        (moving(CAR, [0.0, 0.3, 0.0]), mover(2, [0.0, 0.0, 0.0])),
+        (moving(CAR, nan), mover(2, [0.0, 0.0, 0.0])),
+        (moving(CAR, [9.0; 3]), mover(3, nan)),
+        (moving(WALL, [9.0; 3]), mover(1, [1.0, 0.0, 0.0])),
+        (moving(CAR, [9.0; 3]), air()),
+    ]);
+    let (mean, count) = all(&quality, "people_speed_error_mps");
+    assert!((mean.unwrap() - 0.15).abs() < 1e-6 && count == 2, "{mean:?} {count}");
+}

@@ -67,6 +67,7 @@ pub(crate) fn scale(spec: GridSpec) -> Scale {
         classes: ["road", "car", "wall"].map(String::from).to_vec(),
         free: FREE,
         flat: [ClassId(ROAD)].into_iter().collect::<ClassSet>(),
+        deformable: [ClassId(CAR)].into_iter().collect::<ClassSet>(),
         ring_m: vec![10.0, 20.0],
         noise_sigma_m: 0.0,
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader};
+use occlabel_core::{Fault, Loss, PointsOf, Pose, Scene, SweepHeader};
 
 use super::LIDAR;
 use super::cameras::read_cameras;
@@ -45,7 +45,7 @@ pub(super) fn build_scene(
     let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &exposures, &notes)?;
     let (warnings, refused) = notes.finish();
     let name = name.to_owned();
-    Ok(Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused })
+    Ok(Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused })
 }
 
 /// The sweeps by frame.
@@ -71,6 +71,7 @@ fn read_sweeps(
             world_from_ego: world_from_lidar,
             ego_from_lidar: Pose::identity(),
             labelled: labelled.contains(&frame),
+            points_of: PointsOf::Moment,
         };
         sweeps.insert(frame, header);
     }

@@ -46,7 +46,7 @@ pub(crate) fn read_data(file: impl Read + Seek, count: usize) -> Result<Vec<u16>
 }
 
 /// The dictionary that stands before the array.
-fn read_header(member: &mut impl Read) -> Result<String, NpzDefect> {
+pub(crate) fn read_header(member: &mut impl Read) -> Result<String, NpzDefect> {
     let mut start = [0; 8];
     member.read_exact(&mut start).map_err(format)?;
     let length = match start {
@@ -69,7 +69,7 @@ fn little_endian<const N: usize>(reader: &mut impl Read) -> Result<u64, NpzDefec
 }
 
 /// What follows a key of the dictionary.
-fn text_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
+pub(crate) fn text_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let (_, text) = header.split_once(key)?;
     Some(text.trim_start())
 }

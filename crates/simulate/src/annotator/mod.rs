@@ -1,6 +1,7 @@
 //! What becomes of a drive on its way into a log: labels, boxes and poses, with their faults.
 
 mod boxes;
+mod meshes;
 mod poses;
 mod sightings;
 
@@ -11,6 +12,7 @@ use crate::check::{need, within};
 use crate::mover::Mover;
 
 pub(crate) use boxes::Boxes;
+pub use meshes::DrawnMesh;
 pub use poses::LoggedPoses;
 pub(crate) use sightings::Sightings;
 
@@ -41,6 +43,10 @@ pub struct Annotator {
     pub jitter_yaw_rad: f64,
     /// Deviation of each of a box's edges, metres; none shrinks below half its true length.
     pub jitter_size_m: f64,
+    /// How far a mesh stands from where its mover is, any way, metres.
+    pub mesh_jitter_m: f64,
+    /// By how much a mesh is turned about its box's centre, about any axis, radians.
+    pub mesh_jitter_rad: f64,
     /// How far the ego's logged place drifts from the true one, as a share of the way driven; see
     /// [`LoggedPoses::world_from_ego`].
     pub pose_drift: f64,
@@ -100,6 +106,8 @@ impl Annotator {
         within("jitter_m", self.jitter_m, 0.0, 1e3)?;
         within("jitter_yaw_rad", self.jitter_yaw_rad, 0.0, 1e3)?;
         within("jitter_size_m", self.jitter_size_m, 0.0, 1e3)?;
+        within("mesh_jitter_m", self.mesh_jitter_m, 0.0, 1e3)?;
+        within("mesh_jitter_rad", self.mesh_jitter_rad, 0.0, 1e3)?;
         within("pose_drift", self.pose_drift, 0.0, 1.0)?;
         within("calibration_m", self.calibration_m, 0.0, 1e3)?;
         within("calibration_rad", self.calibration_rad, 0.0, 1e3)?;

@@ -3,10 +3,13 @@
 //! Each writes what the drive's scene says, faults of its annotator included, and nothing that a
 //! real log would not hold. All files go through [`Output`]: a log that looks whole is whole.
 
+mod cloud;
 mod coda;
 mod exposures;
 mod files;
+mod masks;
 mod mcap;
+mod meshes;
 mod nuscenes;
 mod png;
 mod points;
@@ -16,9 +19,12 @@ mod waymo;
 mod wire;
 mod written;
 
+pub use cloud::write_cloud;
 pub use coda::write_coda;
 pub use files::Output;
+pub use masks::write_masks;
 pub use mcap::write_mcap;
+pub use meshes::{MeshNames, write_meshes};
 pub use nuscenes::write_nuscenes;
 pub use semantickitti::write_semantickitti;
 pub use waymo::write_waymo;

@@ -25,7 +25,10 @@ use super::files::Output;
 use super::raw_names::RawNames;
 use super::written::{Images, Written};
 
+pub(super) use calibrations::add_optics;
 use tables::Tables;
+
+pub(super) use scene::sample_token;
 
 /// The folder of the tables, which makes the log one.
 const VERSION: &str = "v1.0-sim";

@@ -41,7 +41,7 @@ pub(super) fn write_scene(
 }
 
 /// A keyframe's token: its time in nanoseconds ends it.
-pub(super) fn sample_token(scene: &str, keyframe: &Keyframe) -> String {
+pub(in crate::write) fn sample_token(scene: &str, keyframe: &Keyframe) -> String {
     format!("{scene}-{}", keyframe.time.0)
 }
 
