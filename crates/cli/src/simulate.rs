@@ -25,8 +25,9 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
     let output = Output::create(&args.output).map_err(usage_or_failed)?;
     write_truth(&worlds, &output)?;
     let (written, last) = write(args, &drives, &taxonomy, &output).map_err(usage_or_failed)?;
-    // nuScenes' own writer has them beside its images.
-    if args.masks && args.format != WrittenFormat::Nuscenes {
+    // These formats' own writers have them beside their images.
+    let has_masks = matches!(args.format, WrittenFormat::Nuscenes | WrittenFormat::Coda);
+    if args.masks && !has_masks {
         drives.iter().try_for_each(|drive| write_masks(drive, images(args), &output).map(drop))?;
     }
     let meshes = mesh_names.map(|names| write_meshes(&drives, names, &output)).transpose()?;

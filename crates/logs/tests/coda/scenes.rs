@@ -1,5 +1,6 @@
 //! What a sound log becomes.
 
+use std::f64::consts::FRAC_PI_2;
 use std::fs;
 
 use nalgebra::{Point3, Vector3};
@@ -89,7 +90,7 @@ fn boxes_stand_in_the_lidars_frame_of_their_frame() {
     assert_eq!((car.category.as_str(), car.boxes.len()), ("Car", 2));
     // 3 m ahead, a yaw of 0.5; the second time after the robot turned by a quarter.
     for ((_, boxed), (centre, yaw)) in
-        car.boxes.iter().zip([([10.0, 0.0, 0.1], 0.5), ([7.0, 3.0, 0.1], 0.5 + 1.570_796_3)])
+        car.boxes.iter().zip([([10.0, 0.0, 0.1], 0.5), ([7.0, 3.0, 0.1], 0.5 + FRAC_PI_2)])
     {
         let pose = &boxed.world_from_box;
         assert!((pose.translation.vector - Vector3::from(centre)).norm() < 1e-6, "{pose}");

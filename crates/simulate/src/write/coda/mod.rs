@@ -24,6 +24,7 @@ use occlabel_core::camera::CameraModel;
 use occlabel_core::{Exposure, Fault, Keyframe, Pose, SweepHeader, Timestamp};
 
 use super::files::Output;
+use super::masks::write_mask;
 use super::png::png;
 use super::points::{LoggedPoint, logged_points, reference_sweeps};
 use super::written::{Images, Written};
@@ -112,8 +113,7 @@ impl Frame<'_> {
             let file = self.file("2d_raw", &format!("cam{number}"), "png");
             let below = file.split_once('/').map_or(&file[..], |(_, below)| below);
             output.write(&file, &png(&image.rgb, size, ExtendedColorType::Rgb8))?;
-            let classes = png(&image.classes, size, ExtendedColorType::L8);
-            output.write(&format!("masks/{below}"), &classes)?;
+            write_mask(&image, &format!("masks/{}", below.trim_end_matches(".png")), output)?;
         }
         Ok(Written { images: cameras.len(), ..Written::default() })
     }
