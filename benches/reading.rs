@@ -28,7 +28,7 @@ use std::time::Instant;
 
 use occlabel_core::{ClassId, McapSettings};
 use occlabel_logs::{
-    Argoverse2Log, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions,
+    Argoverse2Log, CodaLog, Kitti360Log, McapLog, McapOptions, NuScenesLog, NuScenesOptions,
     QuaternionOrder, ReadOptions, SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
@@ -38,6 +38,7 @@ const WRITTEN: &[&str] = &[
     "nuscenes",
     "mcap",
     "semantickitti",
+    "coda",
     "waymo",
     #[cfg(feature = "waymo-v2")]
     "waymo-v2",
@@ -142,6 +143,7 @@ fn open(format: &str, root: &Path) -> Box<dyn SceneSource> {
         "waymo" | "waymo-v2" => {
             Box::new(WaymoLog::open(root, options("occ3d-waymo")).expect("a log"))
         }
+        "coda" => Box::new(CodaLog::open(root, options("coda")).expect("a log")),
         "av2" => Box::new(Argoverse2Log::open(root, options("argoverse2")).expect("a log")),
         other => panic!("no format `{other}`"),
     }

@@ -3,10 +3,11 @@
 
 mod support;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use support::{Arrays, labelled_drive, read_arrays};
+use support::{Arrays, labelled_drive, occlabel, read_arrays, text};
 
 /// A street with movers, two lidars and two cameras. The ego does not sway: Waymo's boxes stand upright
 /// in the vehicle.
@@ -163,4 +164,54 @@ fn both_waymo_logs_of_a_drive_give_the_same_arrays() {
     let first = labelled(folder.path(), "waymo", "waymo");
     let second = labelled(folder.path(), "waymo-v2", "waymo");
     assert!(files(&first, "") == files(&second, ""));
+}
+
+/// The drive with what CODa has words for: one lidar, cameras that it triggers.
+fn one_lidar() -> String {
+    let (before, front) =
+        WORLD.split_once("[[lidar]]\nname = \"LIDAR_FRONT\"").expect("two lidars");
+    let (_, cameras) = front.split_once("[[camera]]").expect("cameras");
+    let cameras = cameras.replace("offset_s = 0.01", "").replace("offset_s = 0.02", "");
+    format!("{before}[[camera]]{cameras}")
+}
+
+/// The label tree of that drive in the lidar's frame, which is the ego's in CODa.
+fn labelled_in_lidar_frame(folder: &Path, format: &str) -> Vec<Arrays> {
+    let [world, log, labels] =
+        ["world.toml", "log", "labels"].map(|name| folder.join(format).join(name));
+    fs::create_dir_all(folder.join(format))
+        .and_then(|()| fs::write(&world, one_lidar()))
+        .expect("a world");
+    let line = ["simulate", "--world", text(&world), "--format", format, "--output", text(&log)];
+    occlabel(&[&line[..], &["--images", "none"]].concat()).exits(0);
+    let line = ["label", "--format", format, "--input", text(&log), "--output", text(&labels)];
+    let rules = ["taxonomy.file=coda", "grid.frame=lidar", "aggregate.ego_box_m=none"];
+    let grid = ["grid.min_m=[-16.0, -16.0, -3.2]", "grid.max_m=[16.0, 16.0, 3.2]"];
+    let sets = rules.iter().chain(&grid).flat_map(|rule| ["--set", rule]);
+    occlabel(&line.into_iter().chain(sets).chain(["--evidence"]).collect::<Vec<_>>()).exits(0);
+    arrays(&labels, if format == "nuscenes" { "drive-" } else { "" })
+}
+
+/// CODa tells terrain and boxes apart from the rest, and the rest not from each other.
+#[test]
+fn the_coda_log_of_a_drive_gives_the_arrays_of_its_nuscenes_log_but_for_classes_of_what_stands() {
+    const FREE: u8 = 20;
+    /// `other`, `vegetation`, `manmade`: what stands and has no box.
+    const STANDS: [u8; 3] = [0, 9, 15];
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut seen = BTreeSet::new();
+    let mut as_told = |mut arrays: Vec<Arrays>| {
+        for class in arrays.iter_mut().flat_map(|arrays| arrays.labels.semantics.values_mut()) {
+            *class = if STANDS.contains(class) { STANDS[0] } else { *class };
+            seen.insert(*class);
+        }
+        arrays
+    };
+    let nuscenes = as_told(labelled_in_lidar_frame(folder.path(), "nuscenes"));
+    let coda = as_told(labelled_in_lidar_frame(folder.path(), "coda"));
+    let (differ, voxels, occupied) = compare(&nuscenes, &coda);
+    println!("{differ} of {voxels} voxels differ, {occupied} are occupied");
+    assert!(differ * 10_000 <= voxels && occupied > 1000, "{differ} of {voxels}, {occupied}");
+    // The car, the walker, road, sidewalk and terrain, and what stands.
+    assert_eq!(Vec::from_iter(seen), [0, 1, 7, 16, 17, 18, FREE]);
 }

@@ -84,8 +84,10 @@ fn trees_of_sweeps_are_judged_and_quick_asks_no_limit_that_it_cannot() {
     let set = ["--set", "duration_s=0.4", "--output", text(&log)];
     occlabel(&[&simulate[..], &set].concat()).exits(0);
     let label = ["label", "--format", "nuscenes", "--input", text(&log), "--preset", "panommocc"];
+    // The preset knows a robot's body, and this is a car.
+    let car = ["--set", "aggregate.ego_box_m=auto"];
     let more = ["--set", "taxonomy.file=occ3d-nuscenes", "--output", text(&tree)];
-    occlabel(&[&label[..], &more].concat()).exits(0);
+    occlabel(&[&label[..], &car, &more].concat()).exits(0);
     let quality = ["quality", text(&tree), "--world-truth", text(&log), "--quick", "--json"];
     let limits = folder.path().join("limits.toml");
     let camera = "[at_least]\noccupied_precision = 0.995\nmask_camera_iou = 0.97\n";

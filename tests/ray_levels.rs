@@ -166,6 +166,7 @@ fn instant<'a>(
     let moment = Moment {
         time: keyframe.time,
         grid_from_world,
+        ego: reference.world_from_ego * LIDAR_ORIGIN,
         reference_lidar: grid_from_world * reference.world_from_lidar() * LIDAR_ORIGIN,
         standing: &boxes
             .map(|stands| TrackBox { track: stands.track, class: None, boxed: stands.boxed })

@@ -46,7 +46,8 @@ fn every_scene_of_a_log_has_its_world() {
 fn the_other_formats_stand_under_their_own_names() {
     let folder = tempfile::tempdir().expect("a folder");
     let kitti = ("semantickitti", "sequences/00/poses.txt");
-    for (format, file) in [kitti, ("mcap", "street.mcap"), ("waymo", "street.tfrecord")] {
+    let coda = ("coda", "poses/dense/street.txt");
+    for (format, file) in [kitti, coda, ("mcap", "street.mcap"), ("waymo", "street.tfrecord")] {
         let log = folder.path().join(format);
         let told = occlabel(&simulate(format, text(&log), &[])).exits(0).stdout;
         let line = format!("label it with  occlabel label --format {format} --input ");

@@ -52,7 +52,7 @@ fn a_wrong_format_is_told_the_right_one() {
     let wrong = |format: &str, root: &Path| {
         occlabel(&["inspect", "--format", format, "--input", text(root)]).exits(2)
     };
-    for format in ["waymo", "semantickitti", "mcap", "av2"] {
+    for format in ["waymo", "semantickitti", "mcap", "av2", "coda"] {
         wrong(format, &log.root()).tells(&["hint: it looks like `--format nuscenes`"]);
     }
     wrong("waymo", &log.beside("")).tells_nothing_of("looks like");

@@ -9,8 +9,9 @@ use crate::line::{Line, OUT, log_of};
 use crate::support::{SMALL, occlabel, report, text};
 
 /// A format, the taxonomies of its world and of its labels, and how many operations are passed over.
-const FORMATS: [(&str, [&str; 2], usize); 3] = [
+const FORMATS: [(&str, [&str; 2], usize); 4] = [
     ("semantickitti", ["occ3d-nuscenes", "semantickitti"], 23),
+    ("coda", ["occ3d-nuscenes", "coda"], 37),
     ("mcap", ["occ3d-waymo", "occ3d-waymo"], 19),
     ("waymo", ["occ3d-waymo", "occ3d-waymo"], 29),
 ];

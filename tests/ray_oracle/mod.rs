@@ -83,7 +83,7 @@ impl<'a> Oracle<'a> {
                 let (point, origin) = (place.apply(position), place.apply(&sweep.cloud.origin(i)));
                 let way = whole(point, origin, sweep.cloud.labels[i]);
                 self.hit(&point);
-                self.cross(&Way { air: Some(sweep.time), ..way });
+                self.cross(&Way { air: sweep.time, ..way });
             }
         }
     }
@@ -140,7 +140,7 @@ impl<'a> Oracle<'a> {
         let then = RigidMap::from(&placed.grid_from_seen_box);
         let entry = then.apply(&placed.seen.entry(origin, position));
         let way = whole(then.apply(position), then.apply(origin), class);
-        self.cross(&Way { from: entry, air: Some(placed.object.time), ..way });
+        self.cross(&Way { from: entry, air: placed.object.time, ..way });
     }
 
     fn hit(&mut self, point: &Point3<f64>) {

@@ -20,7 +20,7 @@ fn label<'a>(format: &'a str, input: &'a str, output: &'a str) -> Vec<&'a str> {
 
 #[test]
 fn a_run_in_a_store_that_fails_leaves_what_a_run_on_a_disk_leaves() {
-    for format in ["nuscenes", "waymo", "mcap", "semantickitti"] {
+    for format in ["nuscenes", "waymo", "mcap", "semantickitti", "coda"] {
         let Some(bucket) = Bucket::new(30) else { return };
         let folder = tempfile::tempdir().unwrap();
         let [log, local] = ["log", "local"].map(|name| folder.path().join(name));

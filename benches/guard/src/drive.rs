@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::{Point3, Rotation3, Vector3};
 use occlabel_core::camera::{Camera, CameraModel, Intrinsics, Pinhole};
 use occlabel_core::{
-    Box3, BoxTrack, Exposure, Keyframe, Meaning, NamedCamera, PointCloud, PointLabel, Pose, Scene,
-    SweepHeader, Taxonomy, Timestamp, TrackId,
+    Box3, BoxTrack, Exposure, Keyframe, Meaning, NamedCamera, PointCloud, PointLabel, PointsOf,
+    Pose, Scene, SweepHeader, Taxonomy, Timestamp, TrackId,
 };
 
 use crate::street::{CAR_SIZE_M, Solid, car_centre, street};
@@ -57,6 +57,7 @@ fn header(at: usize) -> SweepHeader {
         world_from_ego: Pose::translation(EGO_SPEED_MPS * time_s, -1.7, 0.0),
         ego_from_lidar: Pose::translation(0.9, 0.03, 1.84),
         labelled: at.is_multiple_of(KEYFRAME_STRIDE),
+        points_of: PointsOf::Moment,
     }
 }
 

@@ -56,6 +56,7 @@ impl Prepared {
         let moment = Moment {
             time: self.keyframe().time,
             grid_from_world,
+            ego: reference.world_from_ego * Point3::origin(),
             reference_lidar: grid_from_world * reference.world_from_lidar() * Point3::origin(),
             standing: &standing,
         };

@@ -31,6 +31,7 @@ pub(crate) fn instant<'a>(
     let moment = Moment {
         time: keyframe.time,
         grid_from_world,
+        ego: reference.world_from_ego * Point3::origin(),
         reference_lidar: grid_from_world * reference.world_from_lidar() * Point3::origin(),
         standing: &scene.tracks.iter().filter_map(stands).collect::<Vec<_>>(),
     };

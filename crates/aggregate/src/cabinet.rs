@@ -151,7 +151,7 @@ impl<'a> Drawer<'a> {
     fn close(self, time: Timestamp) -> Option<ObjectSweep> {
         (!self.cloud.is_empty()).then(|| ObjectSweep {
             track: self.track,
-            time,
+            time: Some(time),
             boxed: self.boxed.clone(),
             cloud: self.cloud,
         })

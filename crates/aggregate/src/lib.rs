@@ -3,7 +3,8 @@
 //! A point inside a track's box moves with the track, so it is kept in box coordinates
 //! ([`split_sweep`]); everything else is kept in world coordinates. At a keyframe each is placed
 //! where it belongs at that instant ([`compose`]). This is what keeps moving objects sharp: summed
-//! up in world coordinates they would smear into trails.
+//! up in world coordinates they would smear into trails. Points of no time come sorted
+//! ([`keep_timeless`]).
 //!
 //! ```
 //! use nalgebra::{Point3, Vector3};
@@ -18,6 +19,7 @@
 //!     world_from_ego: Pose::identity(),
 //!     ego_from_lidar: Pose::identity(),
 //!     labelled: false,
+//!     points_of: PointsOf::Moment,
 //! };
 //! let positions = vec![Point3::new(10.0, 0.0, 0.0), Point3::new(20.0, 0.0, 0.0)];
 //! let labels = vec![PointLabel::Unlabelled; 2];
@@ -45,7 +47,9 @@ mod beam_order;
 mod cabinet;
 mod compose;
 mod split;
+mod timeless;
 
 pub use accumulate::accumulate;
 pub use compose::{Moment, WindowSettings, compose};
 pub use split::{SplitSettings, SplitSweep, TrackBox, split_sweep};
+pub use timeless::keep_timeless;

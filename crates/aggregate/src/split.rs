@@ -117,7 +117,7 @@ impl<'a> PointFilter<'a> {
 mod tests {
     use super::*;
     use nalgebra::{UnitQuaternion, Vector3};
-    use occlabel_core::{LIDAR_ORIGIN, Pose, SweepHeader, Timestamp};
+    use occlabel_core::{LIDAR_ORIGIN, PointsOf, Pose, SweepHeader, Timestamp};
 
     const CAR: ClassId = ClassId(4);
 
@@ -138,6 +138,7 @@ mod tests {
             world_from_ego,
             ego_from_lidar,
             labelled: true,
+            points_of: PointsOf::Moment,
         }
     }
 
@@ -207,7 +208,7 @@ mod tests {
         let object = &found.objects[0];
         assert_eq!(object.cloud.positions, [Point3::new(-1.0, 0.5, 0.2)]);
         assert_eq!(object.origin(0), Point3::new(-10.0, 0.0, 0.0));
-        assert_eq!((object.cloud.labels[0], object.time), (CAR, Timestamp(7)));
+        assert_eq!((object.cloud.labels[0], object.time), (CAR, Some(Timestamp(7))));
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Carry what was annotated at keyframes to every sweep.
 //!
 //! Two annotations come at keyframes only: boxes and point labels. Boxes are interpolated between
-//! their annotated times ([`box_at`]), labels spread to the points around them ([`relabel`]). Both
-//! happen once per scene, so a point's class does not depend on the keyframe that uses it.
+//! their annotated times ([`box_at`]), labels spread to the points around them ([`relabel`]). Where
+//! images have class masks, points without a label take the classes of the pixels they fall on before
+//! ([`paint`]). All happens once per scene, so a point's class does not depend on the keyframe that
+//! uses it.
 //!
 //! ```
 //! use nalgebra::{Point3, Vector3};
@@ -29,12 +31,15 @@
 mod ballot;
 mod bounds;
 mod box_at;
+mod depth_buffer;
 mod groups;
 mod labelled_tree;
+mod paint;
 mod poll;
 mod relabel;
 mod unlabelled;
 mod vote;
 
 pub use box_at::{BoxSettings, BoxSource, box_at};
+pub use paint::{PaintSettings, View, paint};
 pub use relabel::{GhostClasses, RelabelSettings, relabel};

@@ -116,8 +116,11 @@ fn relabel_sweep(
     settings: &RelabelSettings,
 ) -> (BackgroundSweep<ClassId>, DropCounts, ClassCounts) {
     let (mut drops, mut classes) = (DropCounts::default(), ClassCounts::default());
+    let brush = |i: usize| sweep.brushes.get(i).copied().unwrap_or_default();
+    let mut brushes = Vec::with_capacity(sweep.brushes.len());
     let cloud = sweep.cloud.filter_map(|i, label| {
-        let chosen = (label.map(|class| (class, &mut classes.labels)))
+        let told = if brush(i).is_painted() { &mut classes.masks } else { &mut classes.labels };
+        let chosen = (label.map(|class| (class, told)))
             .or_else(|| Some((verdicts[i].class()?, &mut classes.neighbours)))
             .or_else(|| Some((settings.unknown?, &mut classes.unknown)));
         let Some((class, from)) = chosen else {
@@ -129,9 +132,10 @@ fn relabel_sweep(
             return None;
         }
         *from += 1;
+        brushes.extend(sweep.brushes.get(i));
         Some(class)
     });
-    (BackgroundSweep::new(sweep.time, cloud), drops, classes)
+    (BackgroundSweep { brushes, ..BackgroundSweep::new(sweep.time, cloud) }, drops, classes)
 }
 
 #[cfg(test)]
@@ -210,7 +214,8 @@ mod tests {
         ghosts.ghosts.insert(B);
         let points = [(0.0, Some(A)), (0.1, None), (7.0, None), (20.0, Some(B)), (20.1, None)];
         let relabelled = relabel(scene(&points), &ghosts);
-        let expected = ClassCounts { labels: 1, boxes: 0, neighbours: 1, unknown: 1 };
+        let expected =
+            ClassCounts { labels: 1, neighbours: 1, unknown: 1, ..ClassCounts::default() };
         assert_eq!((relabelled.class_from, relabelled.dropped.ghost), (expected, 2));
     }
 

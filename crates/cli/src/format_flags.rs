@@ -13,7 +13,8 @@ pub(crate) fn check_flags(log: &LogArgs, config: &ConfigArgs) -> Result<(), Faul
         ("--columns", log.columns.is_some(), Format::Nuscenes),
         ("--time-source", log.time_source.is_some(), Format::Mcap),
         ("--recover", log.recover, Format::Mcap),
-        ("--set reader.mcap", config.settings.iter().any(|set| is_mcap_key(set)), Format::Mcap),
+        ("--set reader.mcap", config.sets_reader("mcap"), Format::Mcap),
+        ("--set reader.cloud", config.sets_reader("cloud"), Format::Cloud),
     ];
     let is_unused = |(_, is_given, format): &(_, bool, Format)| *is_given && *format != log.format;
     match flags.into_iter().find(is_unused) {
@@ -25,10 +26,13 @@ pub(crate) fn check_flags(log: &LogArgs, config: &ConfigArgs) -> Result<(), Faul
     }
 }
 
-/// Whether a setting `table.key=VALUE` is one of `[reader.mcap]`.
-fn is_mcap_key(setting: &str) -> bool {
-    let path = setting.split('=').next().unwrap_or_default();
-    path.split('.').map(str::trim).take(2).eq(["reader", "mcap"])
+impl ConfigArgs {
+    /// Whether a setting `table.key=VALUE` is one of `[reader.FORMAT]`.
+    fn sets_reader(&self, format: &str) -> bool {
+        let path = |setting: &str| setting.split('=').next().unwrap_or_default().to_owned();
+        let mut paths = self.settings.iter().map(|setting| path(setting));
+        paths.any(|path| path.split('.').map(str::trim).take(2).eq(["reader", format]))
+    }
 }
 
 /// A format as it is written on the command line.

@@ -10,8 +10,16 @@ use crate::args::LogArgs;
 use crate::format_flags::name;
 
 /// Rules of faults that a folder of another format breaks.
-const LAYOUTS: [&str; 6] =
-    ["version-folder", "waymo-layout", "semantickitti-layout", "mcap-files", "av2-layout", "av2"];
+const LAYOUTS: [&str; 8] = [
+    "version-folder",
+    "waymo-layout",
+    "semantickitti-layout",
+    "mcap-files",
+    "cloud-layout",
+    "av2-layout",
+    "av2",
+    "coda-layout",
+];
 
 /// The fault with the format that the folder looks like, if it breaks the layout of the one given.
 pub(crate) fn with_format(fault: Fault, log: &LogArgs) -> Fault {

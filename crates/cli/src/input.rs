@@ -8,19 +8,21 @@ use occlabel_core::{ClassId, Fault, McapSettings, Taxonomy};
 use occlabel_dialects::{Dialect, DialectGrid};
 use occlabel_disk as disk;
 use occlabel_logs::{
-    Argoverse2Log, Kitti360Log, McapLog, McapOptions, MeshFolder, NuScenesLog, NuScenesOptions,
-    PointColumns, QuaternionOrder, ReadOptions, ReaderDefaults, SceneSource, SemanticKittiLog,
-    TimeSource, WaymoLog,
+    Argoverse2Log, CloudLog, CloudOptions, CodaLog, Kitti360Log, Masks, McapLog, McapOptions,
+    MeshFolder, NuScenesLog, NuScenesOptions, PointColumns, QuaternionOrder, ReadOptions,
+    ReaderDefaults, SceneSource, SemanticKittiLog, TimeSource, WaymoLog,
 };
 use occlabel_pipeline::{
     Autos, Config, GridFrame, GridTable, ReaderTables, Rules, VoxelSize, parse_taxonomy, preset,
     shipped_taxonomy,
 };
+use occlabel_voxelize::Surfels;
 
 use crate::args::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 use crate::exit::Stop;
 use crate::format_flags::check_flags;
 use crate::format_hint::{check_input, with_format};
+use crate::masks::open_masks;
 use crate::presets::unknown_preset;
 use crate::urls::check_url;
 
@@ -34,6 +36,8 @@ pub(crate) struct Opened {
     /// BLAKE3 of the taxonomy's file.
     pub(crate) taxonomy_hash: String,
     pub(crate) rules: Rules,
+    /// The masks that paint; none if there are none.
+    pub(crate) masks: Option<Masks>,
     /// Whether the configuration names the lidar that keyframes refer to.
     pub(crate) names_lidar: bool,
     /// Who is known by their surface.
@@ -72,24 +76,22 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let autos = autos(log, scenes.as_ref(), &mut config.reader).map_err(stop)?;
     let meshes = open_meshes(&mut config, &log.input).map_err(Stop::usage)?;
     let (taxonomy, taxonomy_hash) = resolve(&mut config, &autos).map_err(Stop::usage)?;
+    let unknown_as = unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class);
+    let masks = open_masks(&log.input, &mut config.paint, &taxonomy, unknown_as);
+    let masks = masks.map_err(Stop::usage)?;
     let taxonomy = Arc::new(taxonomy);
     let rules = Rules::new(&config, taxonomy.clone()).map_err(Stop::usage)?;
-    let options = ReadOptions {
-        scenes,
-        unknown_as: unknown_as(log, &taxonomy).map_err(Stop::usage)?.or(stead.class),
-        taxonomy,
-        keyframes: config.keyframes.clone(),
-    };
-    let mcap = config.reader.mcap.clone();
-    let source = open_format(log, options, mcap).map_err(stop)?;
-    Ok(Opened { source, preset: None, config, taxonomy_hash, rules, names_lidar, meshes })
+    let options = ReadOptions { scenes, unknown_as, taxonomy, keyframes: config.keyframes.clone() };
+    let source = open_format(log, options, &config).map_err(stop)?;
+    let preset = None;
+    Ok(Opened { source, preset, config, taxonomy_hash, rules, masks, names_lidar, meshes })
 }
 
 /// Opens a log by its format.
 fn open_format(
     log: &LogArgs,
     read: ReadOptions,
-    mcap: McapSettings,
+    config: &Config,
 ) -> Result<Box<dyn SceneSource>, Fault> {
     match log.format {
         Format::Nuscenes => {
@@ -98,6 +100,7 @@ fn open_format(
         }
         Format::Waymo => WaymoLog::open(&log.input, read).map(|log| Box::new(log) as _),
         Format::Av2 => Argoverse2Log::open(&log.input, read).map(|log| Box::new(log) as _),
+        Format::Coda => CodaLog::open(&log.input, read).map(|log| Box::new(log) as _),
         Format::Semantickitti if Kitti360Log::is_log(&log.input) => {
             Kitti360Log::open(&log.input, read).map(|log| Box::new(log) as _)
         }
@@ -105,8 +108,12 @@ fn open_format(
             SemanticKittiLog::open(&log.input, read).map(|log| Box::new(log) as _)
         }
         Format::Mcap => {
-            let options = mcap_options(log, read, mcap);
+            let options = mcap_options(log, read, config.reader.mcap.clone());
             McapLog::open(&log.input, options).map(|log| Box::new(log) as _)
+        }
+        Format::Cloud => {
+            let options = cloud_options(read, config)?;
+            CloudLog::open(&log.input, options).map(|log| Box::new(log) as _)
         }
     }
 }
@@ -136,7 +143,12 @@ fn autos(
         Format::Nuscenes => NuScenesLog::format_defaults(&log.input, log.version.as_deref())?,
         Format::Waymo => WaymoLog::format_defaults(&log.input)?,
         Format::Av2 => Argoverse2Log::format_defaults(),
+        Format::Coda => CodaLog::format_defaults(),
         Format::Semantickitti => SemanticKittiLog::format_defaults(),
+        Format::Cloud => {
+            tables.cloud = given.cloud;
+            CloudLog::format_defaults()
+        }
         Format::Mcap => {
             let (defaults, mut mcap) = McapLog::resolve(&log.input, scenes, &given.mcap)?;
             let taxonomy = std::mem::replace(&mut mcap.taxonomy, file_name(&given.mcap.taxonomy));
@@ -171,6 +183,15 @@ fn mcap_options(log: &LogArgs, read: ReadOptions, settings: McapSettings) -> Mca
     McapOptions { read, settings, time_source, recover: log.recover }
 }
 
+/// Surfels become points so near to each other that at least two of them fit beside each other into each
+/// voxel of the configured grid.
+fn cloud_options(read: ReadOptions, config: &Config) -> Result<CloudOptions, Fault> {
+    let is_spread = config.voxelize.surfels == Surfels::Extent;
+    let smallest_m = config.grid_spec()?.size_m().min();
+    let surfel_spacing_m = is_spread.then_some(smallest_m / 2.0);
+    Ok(CloudOptions { read, settings: config.reader.cloud.clone(), surfel_spacing_m })
+}
+
 /// What the user named wrongly is a matter of usage; what the log holds wrongly is not.
 fn usage_or_failed(fault: Fault) -> Stop {
     match fault.rule {
@@ -180,8 +201,10 @@ fn usage_or_failed(fault: Fault) -> Stop {
         | "waymo-v2"
         | "av2"
         | "av2-layout"
+        | "coda-layout"
         | "semantickitti-layout"
         | "mcap-files"
+        | "cloud-layout"
         | "mcap-clouds" => Stop::usage(fault),
         _ => fault.into(),
     }
@@ -262,11 +285,11 @@ pub(crate) fn taxonomy_of(file: &str) -> Result<(Taxonomy, String), Fault> {
 }
 
 /// A path without its folders, which would tell of the machine.
-fn file_name(file: &str) -> String {
+pub(crate) fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or(file.into(), |name| name.to_string_lossy().into_owned())
 }
 
-fn read_text(path: &Path) -> Result<String, Fault> {
+pub(crate) fn read_text(path: &Path) -> Result<String, Fault> {
     disk::read_to_string(path).map_err(|error| {
         Fault::new(
             "config-file",

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use occlabel_core::{Fault, Scene};
-use occlabel_pipeline::Config;
+use occlabel_pipeline::{Config, PaintTable};
 
 /// A word about each kind of record that a scene goes without: none of them keeps it from being
 /// labelled.
@@ -16,7 +16,8 @@ fn no_labels(scene: &Scene, config: &Config) -> Option<Fault> {
     let class = &config.relabel.unknown_class;
     let found = format!("none: what no box covers becomes `{class}`");
     let fault = Fault::new("no-labels", "point labels", "labels on some sweeps", found);
-    (!scene.has_point_labels()).then_some(fault)
+    let is_painted = config.paint.masks != PaintTable::NONE;
+    (!scene.has_point_labels() && !is_painted).then_some(fault)
 }
 
 fn few_boxes(scene: &Scene, config: &Config) -> Option<Fault> {

@@ -30,6 +30,8 @@ mod label;
 mod label_pairs;
 mod lacks;
 mod logged_scene;
+mod mask_reader;
+mod masks;
 mod merge_manifests;
 mod plan;
 mod presets;

@@ -1,7 +1,9 @@
 //! `presets`: what ships, and where each number is from.
 
 use occlabel_core::Fault;
-use occlabel_pipeline::{PRESETS, TAXONOMIES, preset};
+use occlabel_pipeline::{
+    MASK_TABLES, PRESETS, TAXONOMIES, preset, shipped_masks, shipped_taxonomy,
+};
 
 use crate::console::Console;
 use crate::exit::{Outcome, Stop};
@@ -21,6 +23,9 @@ fn list(console: &Console) {
     for (name, text) in TAXONOMIES {
         console.result(&format!("taxonomies/{name:18} {}", first_sentence(text)));
     }
+    for (name, text) in MASK_TABLES {
+        console.result(&format!("masks/{name:18} {}", first_sentence(text)));
+    }
 }
 
 /// The first sentence of the comment that heads a file.
@@ -35,10 +40,10 @@ fn first_sentence(text: &str) -> String {
 }
 
 fn text(name: &str) -> Result<&'static str, Stop> {
-    let taxonomy = |name: &str| TAXONOMIES.iter().find(|(known, _)| *known == name);
-    let found = match name.strip_prefix("taxonomies/") {
-        Some(name) => taxonomy(name).map(|(_, text)| *text),
-        None => preset(name),
+    let found = match name.split_once('/') {
+        Some(("taxonomies", name)) => shipped_taxonomy(name),
+        Some(("masks", name)) => shipped_masks(name),
+        _ => preset(name),
     };
     found.ok_or_else(|| Stop::usage(unknown_preset(name)))
 }

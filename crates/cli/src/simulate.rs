@@ -6,7 +6,8 @@ use occlabel_core::{Fault, Taxonomy};
 use occlabel_pipeline::{parse_taxonomy, shipped_taxonomy};
 use occlabel_simulate::{
     Drive, Images, MeshNames, Output, WORLDS, World, Written, shipped_world, world_text_with,
-    write_mcap, write_meshes, write_nuscenes, write_semantickitti, write_waymo,
+    write_cloud, write_coda, write_masks, write_mcap, write_meshes, write_nuscenes,
+    write_semantickitti, write_waymo,
 };
 
 use crate::args::{Format, ImagesArg, SimulateArgs, WrittenFormat};
@@ -24,6 +25,10 @@ pub(crate) fn run(args: &SimulateArgs, console: &Console) -> Result<Outcome, Sto
     let output = Output::create(&args.output).map_err(usage_or_failed)?;
     write_truth(&worlds, &output)?;
     let (written, last) = write(args, &drives, &taxonomy, &output).map_err(usage_or_failed)?;
+    // nuScenes' own writer has them beside its images.
+    if args.masks && args.format != WrittenFormat::Nuscenes {
+        drives.iter().try_for_each(|drive| write_masks(drive, images(args), &output).map(drop))?;
+    }
     let meshes = mesh_names.map(|names| write_meshes(&drives, names, &output)).transpose()?;
     let size = output.finish(&last)?;
     tell(&written, meshes, size, console);
@@ -97,6 +102,14 @@ fn write_truth(worlds: &[(String, World)], output: &Output) -> Result<(), Fault>
     }
 }
 
+fn images(args: &SimulateArgs) -> Images {
+    match args.images {
+        ImagesArg::None => Images::None,
+        ImagesArg::Keyframes => Images::Keyframes,
+        ImagesArg::All => Images::All,
+    }
+}
+
 /// Writes the log, and tells the entry to finish it with.
 fn write(
     args: &SimulateArgs,
@@ -104,17 +117,17 @@ fn write(
     taxonomy: &Taxonomy,
     output: &Output,
 ) -> Result<(Written, String), Fault> {
-    let images = match args.images {
-        ImagesArg::None => Images::None,
-        ImagesArg::Keyframes => Images::Keyframes,
-        ImagesArg::All => Images::All,
-    };
+    let images = images(args);
     match args.format {
         WrittenFormat::Nuscenes => write_nuscenes(drives, taxonomy, images, output)
             .map(|(written, last)| (written, last.to_owned())),
         WrittenFormat::Semantickitti => write_semantickitti(&drives[0], output)
             .map(|(written, last)| (written, last.to_owned())),
+        WrittenFormat::Coda => {
+            write_coda(&drives[0], images, output).map(|(written, last)| (written, last.to_owned()))
+        }
         WrittenFormat::Mcap => write_mcap(&drives[0], taxonomy, images, output),
+        WrittenFormat::Cloud => write_cloud(&drives[0], taxonomy, output),
         WrittenFormat::Waymo => write_waymo(&drives[0], output),
         #[cfg(feature = "waymo-v2")]
         WrittenFormat::WaymoV2 => occlabel_simulate::write_waymo_v2(&drives[0], output),
@@ -159,11 +172,17 @@ fn tell(written: &Written, meshes: Option<usize>, (files, bytes): (usize, u64), 
 /// nuScenes' taxonomy; the others have words of their own.
 fn label_line(args: &SimulateArgs, world: &World) -> String {
     let input = Path::new(&args.output).display();
+    if args.format == WrittenFormat::Cloud {
+        let line = "occlabel label --format cloud --preset gs-occ3d";
+        return format!("{line} --input {input} --output LABELS");
+    }
     let (format, has_own_names) = match args.format {
         WrittenFormat::Nuscenes => (Format::Nuscenes, true),
         WrittenFormat::Mcap => (Format::Mcap, true),
         WrittenFormat::Semantickitti => (Format::Semantickitti, false),
+        WrittenFormat::Coda => (Format::Coda, false),
         WrittenFormat::Waymo | WrittenFormat::WaymoV2 => (Format::Waymo, false),
+        WrittenFormat::Cloud => (Format::Cloud, false),
     };
     let format = name(format);
     let line = format!("occlabel label --format {format} --input {input} --output LABELS");

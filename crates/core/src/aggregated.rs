@@ -2,7 +2,7 @@
 
 use nalgebra::Point3;
 
-use crate::{Body, Box3, Bundles, ClassId, PointCloud, Timestamp, TrackId};
+use crate::{Body, Box3, Brush, Bundles, ClassId, PointCloud, Timestamp, TrackId};
 
 /// A scene's points: what stands in the world, and what moves with a track; and bodies beside them.
 ///
@@ -24,20 +24,22 @@ pub struct AggregatedScene<L> {
 /// The background points of one sweep. World coordinates.
 #[derive(Clone, Debug)]
 pub struct BackgroundSweep<L> {
-    /// The sweep's time.
-    pub time: Timestamp,
+    /// The sweep's time; none if its points are of no time and serve every keyframe.
+    pub time: Option<Timestamp>,
     /// Its points.
     pub cloud: PointCloud<L>,
     /// Boxes around neighbouring points.
     pub bundles: Bundles,
+    /// What masks say of each point; empty if they say nothing of any.
+    pub brushes: Vec<Brush>,
 }
 
 impl<L> BackgroundSweep<L> {
     /// A sweep of points in world coordinates. The more neighbours stand beside each other, the
     /// faster they are worked on.
-    pub fn new(time: Timestamp, cloud: PointCloud<L>) -> Self {
+    pub fn new(time: impl Into<Option<Timestamp>>, cloud: PointCloud<L>) -> Self {
         let bundles = Bundles::of(&cloud);
-        Self { time, cloud, bundles }
+        Self { time: time.into(), cloud, bundles, brushes: Vec::new() }
     }
 }
 
@@ -46,9 +48,9 @@ impl<L> BackgroundSweep<L> {
 pub struct ObjectSweep {
     /// Whose points these are.
     pub track: TrackId,
-    /// The sweep's time.
-    pub time: Timestamp,
-    /// The box at that time, as annotated, interpolated or extrapolated.
+    /// The sweep's time; none if its points are of no time and serve every keyframe.
+    pub time: Option<Timestamp>,
+    /// The box at that time, as annotated, interpolated or extrapolated; the first one if there is none.
     pub boxed: Box3,
     /// The points, each labelled with the track's class.
     pub cloud: PointCloud<ClassId>,
@@ -93,6 +95,8 @@ impl std::ops::AddAssign for DropCounts {
 pub struct ClassCounts {
     /// The log's own point labels.
     pub labels: u64,
+    /// The pixels of masks that they fall on.
+    pub masks: u64,
     /// The track in whose box they are.
     pub boxes: u64,
     /// The vote of labelled neighbours.
@@ -104,6 +108,7 @@ pub struct ClassCounts {
 impl std::ops::AddAssign for ClassCounts {
     fn add_assign(&mut self, other: Self) {
         self.labels += other.labels;
+        self.masks += other.masks;
         self.boxes += other.boxes;
         self.neighbours += other.neighbours;
         self.unknown += other.unknown;

@@ -6,18 +6,28 @@ use crate::Timestamp;
 pub const EXPOSURE_WITHIN_S: f64 = 0.1;
 
 /// Of a camera's exposures in order of time the one nearest to a time, the earlier on ties, and the
-/// first of one time; none if it is not near enough.
+/// first of one time; none if it is not near enough to serve a keyframe.
 pub fn nearest_exposure<T>(
     exposures: &[T],
     time_of: impl Fn(&T) -> Timestamp,
     time: Timestamp,
+) -> Option<&T> {
+    nearest_exposure_within(exposures, time_of, time, EXPOSURE_WITHIN_S)
+}
+
+/// The same; none if it is farther away than `within_s` seconds.
+pub fn nearest_exposure_within<T>(
+    exposures: &[T],
+    time_of: impl Fn(&T) -> Timestamp,
+    time: Timestamp,
+    within_s: f64,
 ) -> Option<&T> {
     let first_from = |from: Timestamp| exposures.partition_point(|one| time_of(one) < from);
     let later = first_from(time);
     let before = exposures[..later].last().map(|last| first_from(time_of(last)));
     let candidates = before.into_iter().chain([later]).filter_map(|place| exposures.get(place));
     let nearest = candidates.min_by_key(|one| time_of(one).0.abs_diff(time.0))?;
-    (time_of(nearest).seconds_apart(time) <= EXPOSURE_WITHIN_S).then_some(nearest)
+    (time_of(nearest).seconds_apart(time) <= within_s).then_some(nearest)
 }
 
 #[cfg(test)]

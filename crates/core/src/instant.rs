@@ -1,5 +1,7 @@
 //! One instant of a scene, in the frame of its grid.
 
+use std::borrow::Cow;
+
 use nalgebra::Point3;
 
 use crate::{
@@ -8,7 +10,7 @@ use crate::{
 };
 
 /// Everything that stands in a grid at one instant: views of the scene's clouds, each with the pose
-/// that brings it into the grid frame. Nothing is copied.
+/// that brings it into the grid frame. Nothing is copied but what is cut.
 ///
 /// What is occupied and what was hit are both read from here, so they cannot disagree.
 #[derive(Clone, Debug)]
@@ -19,8 +21,8 @@ pub struct Instant<'a> {
     pub grid_from_world: Pose,
     /// Where the reference lidar stands, grid frame.
     pub reference_lidar: Point3<f64>,
-    /// Background sweeps of the window, in order.
-    pub background: Vec<&'a BackgroundSweep<ClassId>>,
+    /// Background sweeps of the window, in order: whole, or cut to what is near enough.
+    pub background: Vec<Cow<'a, BackgroundSweep<ClassId>>>,
     /// Object sweeps of the window, in order.
     pub objects: Vec<PlacedObject<'a>>,
     /// Tracks that stand at this instant.
@@ -75,7 +77,7 @@ impl<'a> Instant<'a> {
             time: Timestamp::default(),
             grid_from_world: Pose::identity(),
             reference_lidar: Point3::origin(),
-            background: scene.background.iter().collect(),
+            background: scene.background.iter().map(Cow::Borrowed).collect(),
             objects: Vec::new(),
             standing: Vec::new(),
         }

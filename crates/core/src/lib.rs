@@ -21,15 +21,19 @@ mod aggregated;
 mod blocks;
 mod body;
 mod boxes;
+mod brush;
 mod bundles;
 pub mod camera;
 mod class;
 mod cloud;
+mod cloud_settings;
 mod exposure;
 mod fault;
 mod grid;
 mod instant;
 mod keyframes;
+mod mask;
+mod mask_classes;
 mod mcap_settings;
 mod occupancy;
 mod palette;
@@ -46,21 +50,26 @@ pub use aggregated::{AggregatedScene, BackgroundSweep, ClassCounts, DropCounts, 
 pub use blocks::Blocks;
 pub use body::{Body, BodyMotion, LoggedMesh, TriangleMesh};
 pub use boxes::{Box3, BoxGrowth, BoxTrack, GrownBox, TrackId};
+pub use brush::Brush;
 pub use bundles::{BUNDLE, Bundles, Reach};
 pub use camera::Camera;
 pub use class::{ClassId, ClassSet};
 pub use cloud::{PointCloud, PointLabel, is_finite};
-pub use exposure::{EXPOSURE_WITHIN_S, nearest_exposure};
+pub use cloud_settings::{CloudSettings, OpacityScale, SizeScale};
+pub use exposure::{EXPOSURE_WITHIN_S, nearest_exposure, nearest_exposure_within};
 pub use fault::{Fault, printable};
 pub use grid::{FAR_LANE, GridSpec, LATTICE, LatticePoint, VoxelGrid, VoxelIndex};
 pub use instant::{Instant, PlacedObject, StandingBox};
 pub use keyframes::{KeyframeSettings, KeyframeSource, reference_lidar};
+pub use mask::ClassMask;
+pub use mask_classes::{MaskClasses, MaskTable};
 pub use mcap_settings::McapSettings;
 pub use occupancy::{Evidence, OccupancyLabels, RayCounts, VoxelState, VoxelVote};
 pub use palette::{ColorSet, Palette};
 pub use pose::{Pose, RigidMap, slerp};
 pub use scene::{
-    Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, Refusal, Scene, Sweep, SweepHeader,
+    Exposure, Keyframe, LIDAR_ORIGIN, Loss, NamedCamera, PointsOf, Refusal, Scene, Sweep,
+    SweepHeader,
 };
 pub use simd::{Kernel, Level};
 pub use taxonomy::{Meaning, Taxonomy, TaxonomyError};

@@ -2,7 +2,7 @@
 
 use nalgebra::Point3;
 
-use crate::{BoxTrack, Camera, Fault, PointCloud, PointLabel, Pose, Timestamp};
+use crate::{BoxTrack, Camera, Fault, PointCloud, PointLabel, Pose, Timestamp, TrackId};
 
 /// One revolution of one lidar, without its points.
 #[derive(Clone, Debug)]
@@ -21,6 +21,32 @@ pub struct SweepHeader {
     pub ego_from_lidar: Pose,
     /// Whether the points carry labels.
     pub labelled: bool,
+    /// What its points are points of.
+    pub points_of: PointsOf,
+}
+
+/// What the points of a sweep are points of.
+///
+/// A lidar's are of its moment. Logs of reconstructions have clouds of no time instead: they serve
+/// every keyframe, and no lidar looked along a ray at them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PointsOf {
+    /// Whatever was there at the sweep's time: the boxes of that time sort them.
+    #[default]
+    Moment,
+    /// Nothing: the sweep tells a pose alone.
+    Nothing,
+    /// What stands still at all times; the sweep's frame is world.
+    World,
+    /// A track at all times; the sweep's frame is the box of that track, whenever it stands.
+    Track(TrackId),
+}
+
+impl PointsOf {
+    /// Whether the points are of no time.
+    pub fn is_timeless(self) -> bool {
+        matches!(self, Self::World | Self::Track(_))
+    }
 }
 
 impl SweepHeader {
@@ -88,6 +114,9 @@ pub struct Scene {
     pub cameras: Vec<NamedCamera>,
     /// Keyframes in order of time.
     pub keyframes: Vec<Keyframe>,
+    /// Of each camera everything that it saw, in order of time, between keyframes too. What cannot be
+    /// used is left out.
+    pub exposures: Vec<Vec<Exposure>>,
     /// What is odd but can be lived with.
     pub warnings: Vec<Fault>,
     /// Records that were refused and left out.
@@ -124,6 +153,11 @@ impl Scene {
     /// Whether any sweep carries point labels.
     pub fn has_point_labels(&self) -> bool {
         self.sweeps.iter().any(|sweep| sweep.labelled)
+    }
+
+    /// Whether some points are of no time, which no rays led to.
+    pub fn has_timeless_points(&self) -> bool {
+        self.sweeps.iter().any(|sweep| sweep.points_of.is_timeless())
     }
 
     /// The sweep whose pose places a keyframe's grid, and whose time is the keyframe's.

@@ -39,4 +39,6 @@ pub struct VoxelTruth {
     pub crossed: bool,
     /// One bit per camera that has a true line of sight to its centre, or into it on that line.
     pub sight: u16,
+    /// How many rays through pixels of the keyframe's cameras end in it; 0 if none were cast.
+    pub camera_ends: u32,
 }

@@ -58,6 +58,7 @@ pub mod compare;
 mod exact_mean;
 mod exact_sum;
 pub mod held_out;
+pub mod painted;
 pub mod rays;
 pub mod scores;
 mod world_truth;

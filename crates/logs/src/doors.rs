@@ -16,8 +16,8 @@ use crate::raw_labels::RawLabels;
 use crate::semantickitti::{label_name, line_of_pose, line_of_time};
 use crate::waymo::compressed;
 use crate::{
-    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, kitti360, mcap, meshes, nuscenes,
-    semantickitti,
+    ImageFile, ReadOptions, SceneSource, WaymoLog, check_images, cloud, coda, kitti360, mcap,
+    meshes, nuscenes, semantickitti,
 };
 
 /// All of them.
@@ -46,6 +46,7 @@ pub const DOORS: &[Door] = &[
         knock: semantickitti::doors::sequence,
         seeds: semantickitti::doors::files,
     },
+    Door { name: "cloud", knock: cloud::doors::scene, seeds: cloud::doors::files },
     #[cfg(feature = "av2")]
     Door {
         name: "argoverse2",
@@ -58,6 +59,7 @@ pub const DOORS: &[Door] = &[
         knock: crate::waymo::doors::segment,
         seeds: crate::waymo::doors::files,
     },
+    Door { name: "coda", knock: coda::doors::sequence, seeds: coda::doors::files },
     Door { name: "mesh_obj", knock: meshes::doors::read_obj, seeds: meshes::doors::objs },
     Door { name: "mesh_ply", knock: meshes::doors::read_ply, seeds: meshes::doors::plys },
     Door { name: "mesh_npz", knock: meshes::doors::read_arrays, seeds: meshes::doors::archives },

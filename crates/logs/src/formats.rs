@@ -4,17 +4,19 @@ use std::path::Path;
 
 use occlabel_disk as disk;
 
-use crate::{argoverse2, kitti360, mcap, nuscenes, semantickitti, waymo};
+use crate::{argoverse2, cloud, coda, kitti360, mcap, nuscenes, semantickitti, waymo};
 
 /// Whether a folder has a format's files.
 type Sign = fn(&Path) -> bool;
 
 /// Each format as `--format` names it, and its sign. What looks far comes last.
-const SIGNS: [(&str, Sign); 5] = [
+const SIGNS: [(&str, Sign); 7] = [
     ("nuscenes", nuscenes::has_tables),
     ("waymo", waymo::has_frames),
     ("mcap", mcap::has_files),
     ("semantickitti", |root| kitti360::Kitti360Log::is_log(root) || semantickitti::has_scans(root)),
+    ("cloud", cloud::has_clouds),
+    ("coda", coda::has_sequences),
     ("av2", |root| has_av2_log(root, argoverse2::DEPTH)),
 ];
 
@@ -59,6 +61,10 @@ mod tests {
             ("sequences/00/velodyne/000000.bin", b"", Some("semantickitti")),
             ("velodyne/000000.bin", b"", Some("semantickitti")),
             ("data_3d_raw/drive/a.txt", b"", Some("semantickitti")),
+            ("cloud.ply", b"", Some("cloud")),
+            ("drive/cloud.laz", b"", Some("cloud")),
+            ("3d_comp/os1/0/3d_comp_os1_0_0.bin", b"", Some("coda")),
+            ("3d_raw/os1/7/3d_raw_os1_7_12.bin", b"", Some("coda")),
             ("city_SE3_egovehicle.feather", b"", Some("av2")),
             ("sensor/val/a/city_SE3_egovehicle.feather", b"", Some("av2")),
             ("a/b/c/d/city_SE3_egovehicle.feather", b"", None),

@@ -21,6 +21,8 @@
 
 mod argoverse2;
 mod check;
+mod cloud;
+mod coda;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
 mod files;
@@ -30,6 +32,7 @@ mod inventory;
 mod keyframes;
 mod kitti360;
 mod kitti_labels;
+mod masks;
 mod mcap;
 mod meshes;
 #[cfg(test)]
@@ -51,10 +54,13 @@ mod wire;
 
 pub use argoverse2::Argoverse2Log;
 pub use check::{Finding, SceneSurvey, Severity, SweepSurvey, UnknownSum, check_poses};
+pub use cloud::{CloudLog, CloudOptions};
+pub use coda::CodaLog;
 pub use formats::looks_like;
 pub use image_files::{ImageFile, check_images};
 pub use inventory::{Inventory, MissingFile};
 pub use kitti360::Kitti360Log;
+pub use masks::{MaskFile, Masks, SceneMasks};
 pub use mcap::{McapLog, McapOptions, TimeSource};
 pub use meshes::{MeshFile, MeshFolder};
 pub use nuscenes::{NuScenesLog, NuScenesOptions, QuaternionOrder};

@@ -22,9 +22,15 @@ pub(crate) fn read_lines(root: &Path, file: &str) -> Result<Vec<String>, Fault> 
 /// # Errors
 /// What was found, if that is not N numbers, all finite.
 pub(crate) fn numbers<const N: usize>(line: &str) -> Result<[f64; N], String> {
-    let words = line.split_whitespace();
-    let read: Result<Vec<f64>, String> = words.map(number).collect();
-    read?.try_into().map_err(|read: Vec<f64>| format!("{} numbers", read.len()))
+    list(line)?.try_into().map_err(|read: Vec<f64>| format!("{} numbers", read.len()))
+}
+
+/// All numbers of a line.
+///
+/// # Errors
+/// What was found, if one is none, or not finite.
+pub(crate) fn list(line: &str) -> Result<Vec<f64>, String> {
+    line.split_whitespace().map(number).collect()
 }
 
 fn number(word: &str) -> Result<f64, String> {

@@ -1,10 +1,13 @@
-//! Poses from matrices, and from roll, pitch and yaw.
+//! Poses from matrices, from quaternions, and from roll, pitch and yaw.
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion};
 use occlabel_core::Pose;
 
 /// How far from a rotation a matrix may be, largest element of R R^T - 1: beyond it, it tells none.
 const LARGEST_ERROR: f64 = 1e-4;
+
+/// How far a quaternion's norm may be off 1.
+const LARGEST_NORM_ERROR: f64 = 1e-2;
 
 /// Nothing stands farther than this from its frame's origin along any axis, metres: no place on Earth
 /// does, and steps of f64 are a tenth of a micrometre there.
@@ -68,6 +71,29 @@ pub(crate) const A_POSE: &str = "16 numbers of a rigid transform";
 fn nearest_rotation(matrix: Matrix3<f64>) -> UnitQuaternion<f64> {
     let near = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix));
     UnitQuaternion::new_normalize(near.into_inner())
+}
+
+/// The pose of a quaternion, its real part first, made one of norm 1, and a place in metres.
+///
+/// # Errors
+/// What was found, if a number is not finite, the norm off by more than 1e-2, or the place more than 1e9 m
+/// off.
+pub(crate) fn pose_from_quaternion(
+    [w, x, y, z]: [f64; 4],
+    place: [f64; 3],
+) -> Result<Pose, String> {
+    let rotation = Quaternion::new(w, x, y, z);
+    let norm = rotation.norm();
+    if !norm.is_finite() || !place.iter().all(|number| number.is_finite()) {
+        return Err("a number that is not finite".into());
+    }
+    if !is_place(&place) {
+        return Err(format!("a place {place:?} m, beyond 1e9 m"));
+    }
+    if (norm - 1.0).abs() > LARGEST_NORM_ERROR {
+        return Err(format!("a quaternion of norm {norm}"));
+    }
+    Ok(Pose::from_parts(Translation3::from(place), UnitQuaternion::new_normalize(rotation)))
 }
 
 /// The pose of a vehicle by roll, pitch and yaw about x, y and z, and its place: it is turned by roll

@@ -1,12 +1,15 @@
 //! What a configuration may say: checked once, at the door.
 
-use occlabel_core::{Fault, McapSettings};
+use occlabel_core::{CloudSettings, Fault, McapSettings};
 
 use crate::Config;
 use crate::config::{EgoBox, MeshTable};
 
 /// Rays longer than this many voxels are refused (labels.md section 8).
 const LONGEST_RAY_VOXELS: f64 = (1 << 20) as f64;
+
+/// More pixels to each side are whole images.
+const MOST_PX: u32 = 1000;
 
 /// Refuses a configuration with an impossible value.
 pub(crate) fn check(config: &Config) -> Result<(), Fault> {
@@ -16,6 +19,9 @@ pub(crate) fn check(config: &Config) -> Result<(), Fault> {
     check_distances(config)?;
     check_meshes(&config.meshes)?;
     check_ego_box(&config.aggregate.ego_box_m)?;
+    check_pixels("paint.borders_px", config.paint.borders_px)?;
+    check_pixels("paint.splat_px", config.paint.splat_px)?;
+    check_cloud(&config.reader.cloud)?;
     check_mcap(&config.reader.mcap)?;
     check_reach(config)
 }
@@ -31,6 +37,7 @@ fn check_counts(config: &Config) -> Result<(), Fault> {
 fn check_spans(config: &Config) -> Result<(), Fault> {
     not_negative("boxes.max_gap_s", config.boxes.max_gap_s)?;
     not_negative("boxes.extrapolate_s", config.boxes.extrapolate_s)?;
+    not_negative("paint.max_dt_s", config.paint.max_dt_s)?;
     not_negative("aggregate.window_s", config.aggregate.window_s)?;
     not_negative("aggregate.deformable_window_s", config.aggregate.deformable_window_s)?;
     not_negative("raycast.same_time_s", config.raycast.same_time_s)
@@ -39,8 +46,10 @@ fn check_spans(config: &Config) -> Result<(), Fault> {
 fn check_distances(config: &Config) -> Result<(), Fault> {
     let ratio = config.states.min_hit_ratio;
     positive("aggregate.max_range_m", config.aggregate.max_range_m)?;
+    not_negative("aggregate.radius_m", config.aggregate.radius_m.value().unwrap_or(0.0))?;
     positive("aggregate.box_scale", config.aggregate.box_scale)?;
     not_negative("aggregate.box_margin_m", config.aggregate.box_margin_m)?;
+    not_negative("paint.occlusion_m", config.paint.occlusion_m)?;
     not_negative("relabel.max_distance_m", config.relabel.max_distance_m.value().unwrap_or(0.0))?;
     not_negative("raycast.ignore_near_hit_m", config.raycast.ignore_near_hit_m)?;
     not_negative("raycast.ignore_near_origin_m", config.raycast.ignore_near_origin_m)?;
@@ -58,10 +67,20 @@ fn check_meshes(meshes: &MeshTable) -> Result<(), Fault> {
     positive("meshes.mesh_error_rad", meshes.mesh_error_rad)
 }
 
+fn check_pixels(key: &str, pixels: u32) -> Result<(), Fault> {
+    need(key, pixels <= MOST_PX, &format!("at most {MOST_PX}"), pixels)
+}
+
 fn check_ego_box(ego_box: &EgoBox) -> Result<(), Fault> {
     let EgoBox::Corners { min, max } = ego_box else { return Ok(()) };
     let is_box = (0..3).all(|a| min[a].is_finite() && max[a].is_finite() && min[a] <= max[a]);
     need("aggregate.ego_box_m", is_box, "finite corners, min <= max", format!("{min:?} {max:?}"))
+}
+
+fn check_cloud(settings: &CloudSettings) -> Result<(), Fault> {
+    let opacity = settings.min_opacity;
+    let is_share = opacity > 0.0 && opacity <= 1.0;
+    need("reader.cloud.min_opacity", is_share, "above 0, at most 1", opacity)
 }
 
 fn check_mcap(settings: &McapSettings) -> Result<(), Fault> {
@@ -114,11 +133,17 @@ mod tests {
         for setting in [
             "keyframes.stride=0",
             "relabel.k=0",
+            "paint.max_dt_s=-0.1",
+            "paint.occlusion_m=nan",
+            "paint.splat_px=1001",
+            "paint.borders_px=1001",
             "occlusion.pixel_stride=0",
             "states.occupied_min_hits=0",
             "boxes.max_gap_s=-1",
             "aggregate.window_s=nan",
             "aggregate.max_range_m=0",
+            "aggregate.radius_m=-1",
+            "reader.cloud.min_opacity=0",
             "aggregate.box_scale=-1.0",
             "raycast.same_time_s=inf",
             "states.min_hit_ratio=1.5",

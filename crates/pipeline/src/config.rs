@@ -1,7 +1,9 @@
 //! The configuration: every key of labels.md section 14, under its name there.
 
-use occlabel_annotate::{BoxSettings, GhostClasses};
-use occlabel_core::{Fault, GridSpec, KeyframeSettings, McapSettings, Taxonomy};
+use occlabel_annotate::{BoxSettings, GhostClasses, PaintSettings};
+use occlabel_core::{
+    CloudSettings, Fault, GridSpec, KeyframeSettings, MaskClasses, McapSettings, Taxonomy,
+};
 use occlabel_occlusion::OcclusionSettings;
 use occlabel_raycast::{RaySettings, StateSettings};
 use occlabel_voxelize::VoteSettings;
@@ -21,6 +23,8 @@ pub struct Config {
     pub boxes: BoxSettings,
     /// How sweeps are sorted and summed.
     pub aggregate: AggregateTable,
+    /// How masks of images give points a class.
+    pub paint: PaintTable,
     /// How unlabelled points get a class.
     pub relabel: RelabelTable,
     /// How a voxel gets its class.
@@ -44,6 +48,8 @@ pub struct Config {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReaderTables {
+    /// Clouds of reconstructions.
+    pub cloud: CloudSettings,
     /// MCAP logs.
     pub mcap: McapSettings,
 }
@@ -105,6 +111,8 @@ pub struct AggregateTable {
     pub window_s: f64,
     /// The same for tracks whose shape changes, seconds.
     pub deformable_window_s: f64,
+    /// Background points farther from a keyframe's pose do not serve it, metres, or `"none"`.
+    pub radius_m: Limit,
 }
 
 /// The ego vehicle's body: `"auto"`, `"none"`, or `{ min, max }` in the ego frame, metres.
@@ -133,6 +141,37 @@ pub enum EgoWord {
     Auto,
     /// Nothing is dropped.
     None,
+}
+
+/// The `[paint]` table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaintTable {
+    /// The folder of class masks, below the log's root unless absolute; `"none"`, or `"auto"`: the
+    /// folder `masks` of the log if there is one.
+    pub masks: String,
+    /// What their pixels mean.
+    pub classes: MaskClasses,
+    /// Pixels within so many of one of another class give no point a class.
+    pub borders_px: u32,
+    /// An exposure paints the sweeps that are at most so far from it in time, seconds.
+    pub max_dt_s: f64,
+    /// What is farther behind the nearest return of its pixel is hidden, metres.
+    pub occlusion_m: f64,
+    /// A return hides what is behind it in so many pixels to each side of its own.
+    pub splat_px: u32,
+}
+
+impl PaintTable {
+    /// The word for no masks.
+    pub const NONE: &str = "none";
+
+    /// How masks paint; `None` if there are none.
+    pub(crate) fn settings(&self) -> Option<PaintSettings> {
+        let Self { max_dt_s, occlusion_m, splat_px, .. } = *self;
+        let settings = PaintSettings { max_dt_s, occlusion_m, splat_px };
+        (self.masks != Self::NONE).then_some(settings)
+    }
 }
 
 /// The `[relabel]` table.

@@ -120,6 +120,7 @@ fn grid_seconds(work: &SceneWork) -> f64 {
 
 fn casting_seconds(work: &SceneWork) -> f64 {
     let (a_step, a_ray) = match work.casting {
+        CastingCost::Nothing => return 0.0,
         CastingCost::Marks => (MARK, 0.0),
         CastingCost::Counts if work.voxels > MANY_VOXELS * work.keyframes => {
             (COUNT + BIG_COUNT, 0.0)

@@ -20,7 +20,8 @@ struct Motion {
 /// Velocity of each voxel's centre with its track, grid frame, metres per second.
 ///
 /// 0 where nothing is, or nothing that a track vouches for; NaN where the track's next annotation is
-/// missing or farther away than `max_gap_s`, or its body has no neighbour in time. Both boxes stand in the keyframe's own grid, so the
+/// missing or farther away than `max_gap_s`, of instances that have no box, and where a body has no
+/// neighbour in time. Both boxes stand in the keyframe's own grid, so the
 /// ego's motion is not in it.
 pub(crate) fn flow(
     scene: &Scene,
@@ -39,7 +40,9 @@ pub(crate) fn flow(
     occupied.map(|vote| {
         let at = flat.next().expect("one voxel per vote");
         let track = vote.as_ref().and_then(|vote| vote.instance);
-        track.map_or([0.0; 3], |track| velocity(motions[&track].as_ref(), spec, at))
+        // An instance that masks alone tell of has no box to move with.
+        let motion = |track| motions.get(&track).and_then(Option::as_ref);
+        track.map_or([0.0; 3], |track| velocity(motion(track), spec, at))
     })
 }
 

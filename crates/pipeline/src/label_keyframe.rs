@@ -7,7 +7,9 @@ use occlabel_core::{
     VoxelGrid, VoxelState, VoxelVote,
 };
 use occlabel_occlusion::{Eye, Lenses, matter, visible};
-use occlabel_raycast::{Casting, Crossings, StateSettings, classify, count};
+use occlabel_raycast::{
+    Casting, Crossings, RaySource, StateSettings, classify, count, count_hits, seen,
+};
 
 use crate::Rules;
 use crate::aggregate_scene::standing_boxes;
@@ -87,7 +89,11 @@ pub fn label_keyframe(
     let mut votes = votes_beside(bodies, &instant, spec, &rules.votes());
 
     enter(Stage::Raycast);
-    let counts = count(&instant, spec, &rules.rays(), &options.casting(&rules.states));
+    let source = rules.rays().settings.source;
+    let counts = match source {
+        RaySource::Lidar => count(&instant, spec, &rules.rays(), &options.casting(&rules.states)),
+        RaySource::Camera => count_hits(&instant, spec),
+    };
     let mut states = classify(&counts, &votes, ground, &rules.states);
     lay_over(bodies, &moment.grid_from_world, spec, &mut votes, &mut states);
     let occupied = occupied_votes(votes, &states);
@@ -98,6 +104,11 @@ pub fn label_keyframe(
     let eyes = open_eyes(scene, keyframe, &moment.grid_from_world);
     let camera_bits =
         visible(&eyes, lenses, spec, &matter(&states, &occupied, ground), &rules.occlusion);
+    let states = match source {
+        RaySource::Lidar => states,
+        RaySource::Camera => seen(&states, &camera_bits),
+    };
+    let occupied = occupied_votes(occupied, &states);
 
     enter(Stage::Finish);
     let mut labels = arrays(rules.taxonomy.free, states, &occupied, &camera_bits);
@@ -118,7 +129,8 @@ pub(crate) fn moment<'a>(
     let reference = scene.reference_sweep(keyframe);
     let grid_from_world = rules.world_from_grid(reference).inverse();
     let reference_lidar = grid_from_world * reference.world_from_lidar() * Point3::origin();
-    Moment { time: keyframe.time, grid_from_world, reference_lidar, standing }
+    let ego = reference.world_from_ego * Point3::origin();
+    Moment { time: keyframe.time, grid_from_world, ego, reference_lidar, standing }
 }
 
 pub(crate) fn open_eyes<'a>(

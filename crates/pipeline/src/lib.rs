@@ -34,23 +34,27 @@ mod laid_over;
 mod layers;
 mod memory;
 mod own_sensors;
+mod paint_scene;
 mod presets;
 mod rules;
 mod scene_work;
 mod standing;
 
-pub use aggregate_scene::{aggregate_scene, boxes_at, sort_scene};
+pub use aggregate_scene::{aggregate_painted_scene, aggregate_scene, boxes_at, sort_scene};
 pub use bodies::{Fit, KeyframeMeshes, MeshFit, MeshTracks, embody, mesh_tracks};
 pub use config::{
-    Autos, Config, EgoBox, GridFrame, GridTable, Limit, MeshFrame, MeshTable, ReaderTables,
-    VoxelSize,
+    Autos, Config, EgoBox, GridFrame, GridTable, Limit, MeshFrame, MeshTable, PaintTable,
+    ReaderTables, VoxelSize,
 };
 pub use cost::Cost;
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
 pub use occlabel_occlusion::Lenses;
 pub use own_sensors::{own_points, own_view};
-pub use presets::{PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_taxonomy};
+pub use paint_scene::{MaskedExposures, paint_scene};
+pub use presets::{
+    MASK_TABLES, PRESETS, TAXONOMIES, parse_taxonomy, preset, shipped_masks, shipped_taxonomy,
+};
 pub use rules::{MeshRules, Rules};
 pub use scene_work::{CastingCost, SceneWork};
 pub use standing::standing_at;

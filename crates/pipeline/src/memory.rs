@@ -12,6 +12,9 @@ const BYTES_A_THREAD: u64 = 1 << 20;
 /// the search tree; measured up to 67 where half of the points are labelled.
 const BYTES_A_POINT: u64 = 30 + 38;
 
+/// Bytes of a point in a cloud: position, label, origin.
+const BYTES_A_COPY: u64 = 30;
+
 /// Bytes that a voxel takes while rays are counted and judged, besides the shards: vote 6, state 1.
 const BYTES_A_COUNTED_VOXEL: u64 = 7;
 
@@ -48,6 +51,8 @@ pub struct MemoryModel {
     evidence: bool,
     /// Bytes that those take who bring the sweeps.
     beside: u64,
+    /// Points that each keyframe may copy.
+    copied: u64,
 }
 
 impl MemoryModel {
@@ -56,12 +61,17 @@ impl MemoryModel {
         let [nx, ny, nz] = spec.shape().map(|n| n as u64);
         let bits = nx * ny * nz.div_ceil(64) * 8;
         let looks = bits * (BITS_A_CAMERA * cameras as u64 + BITS_FOR_ALL_CAMERAS);
-        Self { points, voxels: nx * ny * nz, looks, evidence, beside: 0 }
+        Self { points, voxels: nx * ny * nz, looks, evidence, beside: 0, copied: 0 }
     }
 
     /// The same, where what brings the sweeps takes so many bytes.
     pub fn beside(self, bytes: u64) -> Self {
         Self { beside: bytes, ..self }
+    }
+
+    /// The same, where each keyframe copies what is near enough of the points.
+    pub fn cutting(self) -> Self {
+        Self { copied: self.points, ..self }
     }
 
     /// Bytes with `keyframes` labelled at once, the rays of each in `shards`.
@@ -70,7 +80,7 @@ impl MemoryModel {
             + self.beside
             + (keyframes * shards) as u64 * BYTES_A_THREAD
             + self.points * BYTES_A_POINT
-            + keyframes as u64 * self.keyframe_bytes(shards as u64)
+            + keyframes as u64 * (self.keyframe_bytes(shards as u64) + self.copied * BYTES_A_COPY)
     }
 
     fn keyframe_bytes(&self, shards: u64) -> u64 {

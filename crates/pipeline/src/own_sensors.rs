@@ -21,7 +21,9 @@ pub fn own_points(
 ) -> VoxelGrid<u8> {
     let standing = standing_boxes(&scene.tracks, keyframe.time, rules);
     let window = WindowSettings { window_s: 0.0, deformable_window_s: 0.0, ..rules.window };
-    let instant = compose(aggregated, &moment(scene, keyframe, rules, &standing), &window);
+    let mut instant = compose(aggregated, &moment(scene, keyframe, rules, &standing), &window);
+    instant.background.retain(|sweep| sweep.time.is_some());
+    instant.objects.retain(|placed| placed.object.time.is_some());
     voxelize(&instant, &rules.spec, &rules.votes()).map(|vote| u8::from(vote.is_some()))
 }
 

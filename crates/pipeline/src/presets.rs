@@ -11,12 +11,17 @@ macro_rules! shipped {
 /// Presets by name, the default first.
 pub const PRESETS: &[(&str, &str)] = shipped!(
     "": "precise" "paper" "occ3d-nuscenes" "occ3d-waymo" "occ3d-waymo-text" "panommocc" "mobileocc"
+        "gs-occ3d"
 );
 
 /// Taxonomies by name.
 pub const TAXONOMIES: &[(&str, &str)] = shipped!(
     "taxonomies/": "occ3d-nuscenes" "occ3d-waymo" "panommocc" "mobileocc" "semantickitti" "argoverse2"
+        "occupancy" "coda"
 );
+
+/// What the pixels of masks mean in label sets that many segmenters speak, by name.
+pub const MASK_TABLES: &[(&str, &str)] = shipped!("masks/": "cityscapes" "mapillary-vistas");
 
 /// The text of a preset.
 pub fn preset(name: &str) -> Option<&'static str> {
@@ -26,6 +31,11 @@ pub fn preset(name: &str) -> Option<&'static str> {
 /// The text of a shipped taxonomy.
 pub fn shipped_taxonomy(name: &str) -> Option<&'static str> {
     find(TAXONOMIES, name)
+}
+
+/// The text of a shipped table of masks.
+pub fn shipped_masks(name: &str) -> Option<&'static str> {
+    find(MASK_TABLES, name)
 }
 
 /// A taxonomy from the text of its file.
@@ -46,6 +56,7 @@ fn find(list: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
 mod tests {
     use super::*;
     use crate::Config;
+    use occlabel_core::MaskClasses;
 
     #[test]
     fn section_13_every_preset_states_every_key() {
@@ -53,6 +64,17 @@ mod tests {
             Config::parse(text, name).unwrap_or_else(|fault| panic!("{fault}"));
         }
         assert_eq!(PRESETS[0].0, "precise");
+    }
+
+    #[test]
+    fn section_5_shipped_masks_speak_of_known_classes() {
+        let taxonomy = parse_taxonomy(shipped_taxonomy("mobileocc").unwrap(), "mobileocc").unwrap();
+        let tables = MASK_TABLES.iter().map(|(name, text)| {
+            let classes = MaskClasses::Table(toml::from_str(text).unwrap());
+            let table = classes.table(&taxonomy).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+            (table.ids.len(), table.colours.len())
+        });
+        assert_eq!(tables.collect::<Vec<_>>(), [(34, 20), (66, 0)]);
     }
 
     #[test]

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::Point3;
 use occlabel_aggregate::{SplitSettings, WindowSettings};
-use occlabel_annotate::{BoxSettings, GhostClasses, RelabelSettings};
+use occlabel_annotate::{BoxSettings, GhostClasses, PaintSettings, RelabelSettings};
 use occlabel_core::{BoxGrowth, ClassId, Fault, GridSpec, Pose, Scene, SweepHeader, Taxonomy};
 use occlabel_meshes::AlignSettings;
 use occlabel_occlusion::OcclusionSettings;
-use occlabel_raycast::{RayRules, RaySettings, StateSettings};
+use occlabel_raycast::{RayRules, RaySettings, RaySource, StateSettings};
 use occlabel_voxelize::{Vote, VoteRules};
 
 use crate::config::{EgoBox, MeshTable, RelabelTable};
@@ -29,6 +29,8 @@ pub struct Rules {
     pub split: SplitSettings,
     /// Section 4, once per keyframe.
     pub window: WindowSettings,
+    /// Section 5, from masks; `None` if there are none.
+    pub paint: Option<PaintSettings>,
     /// Section 9.
     pub states: StateSettings,
     /// Section 9a.
@@ -76,9 +78,11 @@ impl Rules {
             window: WindowSettings {
                 window_s: aggregate.window_s,
                 deformable_window_s: aggregate.deformable_window_s,
+                radius_m: aggregate.radius_m.value(),
                 deformable: taxonomy.deformable,
                 growth,
             },
+            paint: config.paint.settings(),
             states: config.states,
             meshes: mesh_rules(&config.meshes, &taxonomy)?,
             occlusion: config.occlusion,
@@ -111,6 +115,11 @@ impl Rules {
         RayRules { settings: &self.rays, flat: &self.taxonomy.flat }
     }
 
+    /// Whether lidar rays tell what is free, and not the cameras'.
+    pub fn casts_lidar_rays(&self) -> bool {
+        self.rays.source == RaySource::Lidar
+    }
+
     /// Where the grid of a keyframe stands, by its reference sweep.
     pub fn world_from_grid(&self, reference: &SweepHeader) -> Pose {
         match self.frame {
@@ -119,12 +128,28 @@ impl Rules {
         }
     }
 
-    /// Refuses a scene that would come out empty: no point label, and no class for such points.
+    /// Refuses a scene that would come out empty: without point labels, masks or a class for such
+    /// points, or without the rays that are asked for.
     ///
     /// # Errors
     /// If so, with what to set.
-    pub fn check_labels(&self, scene: &Scene) -> Result<(), Fault> {
-        if scene.has_point_labels() || self.unknown.is_some() {
+    pub fn check(&self, scene: &Scene) -> Result<(), Fault> {
+        self.check_rays(scene)?;
+        self.check_labels(scene)
+    }
+
+    fn check_rays(&self, scene: &Scene) -> Result<(), Fault> {
+        if !self.casts_lidar_rays() || !scene.has_timeless_points() {
+            return Ok(());
+        }
+        let expected = "rays of a lidar, as raycast.source = \"lidar\" asks for";
+        let fault = Fault::new("no-rays", &scene.name, expected, "points that no lidar measured");
+        Err(fault
+            .hint("--preset gs-occ3d, or --set raycast.source=camera, goes by the cameras' rays"))
+    }
+
+    fn check_labels(&self, scene: &Scene) -> Result<(), Fault> {
+        if scene.has_point_labels() || self.paint.is_some() || self.unknown.is_some() {
             return Ok(());
         }
         Err(Fault::new(

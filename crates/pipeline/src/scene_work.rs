@@ -7,7 +7,7 @@ use occlabel_annotate::{BoxSource, box_at};
 use occlabel_core::camera::CameraModel;
 use occlabel_core::{Box3, BoxTrack, GridSpec, Keyframe, Scene, SweepHeader, Timestamp};
 use occlabel_occlusion::{CameraRays, Eye, in_view};
-use occlabel_raycast::{Crossings, ObjectRays, RaySettings};
+use occlabel_raycast::{Crossings, ObjectRays, RaySettings, RaySource};
 use serde::{Deserialize, Serialize};
 
 use crate::Rules;
@@ -78,6 +78,8 @@ pub struct SceneWork {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CastingCost {
+    /// Nothing: no ray is cast.
+    Nothing,
     /// Whether there were any.
     Marks,
     /// How many there were.
@@ -214,9 +216,11 @@ fn half_m(spec: &GridSpec) -> f64 {
 }
 
 fn casting(rules: &Rules, evidence: bool) -> CastingCost {
-    let RaySettings { ignore_near_hit_m, ignore_near_origin_m, flat_ignore_dz_m, .. } =
+    let RaySettings { source, ignore_near_hit_m, ignore_near_origin_m, flat_ignore_dz_m, .. } =
         *rules.rays().settings;
-    if ignore_near_hit_m.max(ignore_near_origin_m).max(flat_ignore_dz_m) > 0.0 {
+    if source == RaySource::Camera {
+        CastingCost::Nothing
+    } else if ignore_near_hit_m.max(ignore_near_origin_m).max(flat_ignore_dz_m) > 0.0 {
         CastingCost::RuledCounts
     } else if evidence || rules.states.crossings() == Crossings::HowMany {
         CastingCost::Counts

@@ -66,7 +66,7 @@ fn section_5_without_point_labels_all_background_is_unknown_and_boxes_give_their
         [("taxonomy", OTHERS), ("vegetation", VEGETATION), ("manmade", MANMADE)]
     {
         let rules = small(&[&format!("relabel.unknown_class={setting}")]);
-        rules.check_labels(&drive.scene).expect("a class for what has none");
+        rules.check(&drive.scene).expect("a class for what has none");
         let labels = drive.label(&rules);
         assert_eq!(class_of(&labels, &rules, HERE), Some(CAR));
         assert_eq!(class_of(&labels, &rules, THERE), Some(unknown), "{setting}");
@@ -79,12 +79,12 @@ fn section_5_without_point_labels_drop_is_an_error_with_a_hint() {
     let some_labelled =
         drive_of(&[(0.0, seen(&[(HERE, UNLABELLED)])), (0.1, seen(&[(THERE, labelled(ROAD))]))]);
     let drop = small(&["relabel.unknown_class=drop"]);
-    let fault = drop.check_labels(&unlabelled.scene).expect_err("nothing would be left");
+    let fault = drop.check(&unlabelled.scene).expect_err("nothing would be left");
     let said = fault.to_string();
     assert!(said.contains("relabel.unknown_class"), "{said}");
-    assert!(drop.check_labels(&some_labelled.scene).is_ok());
+    assert!(drop.check(&some_labelled.scene).is_ok());
     let no_unknown = small(&["taxonomy.file=panommocc"]);
-    assert!(no_unknown.check_labels(&unlabelled.scene).is_err(), "its `unknown` is drop");
+    assert!(no_unknown.check(&unlabelled.scene).is_err(), "its `unknown` is drop");
 }
 
 #[test]

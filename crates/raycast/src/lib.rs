@@ -8,13 +8,14 @@
 //! use nalgebra::Point3;
 //! use occlabel_core::*;
 //! use occlabel_raycast::{
-//!     Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, count,
+//!     Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, RaySource, count,
 //! };
 //!
 //! let wall = vec![Point3::new(3.5, 0.5, 0.5)];
 //! let cloud = PointCloud::from_one_origin(Point3::new(0.5, 0.5, 0.5), wall, vec![ClassId(0)]);
 //! let scene = AggregatedScene::new(vec![BackgroundSweep::new(Timestamp(0), cloud)], vec![]);
 //! let settings = RaySettings {
+//!     source: RaySource::Lidar,
 //!     outside: Outside::Clip,
 //!     ignore_near_hit_m: 0.0,
 //!     ignore_near_origin_m: 0.0,
@@ -34,8 +35,10 @@ mod caster;
 mod cells;
 mod classify;
 mod count;
+mod hits;
 mod near;
 mod object_rays;
+mod seen;
 mod settings;
 mod sweep_rays;
 mod walkers;
@@ -44,4 +47,6 @@ mod work;
 
 pub use classify::{Conflict, StateSettings, classify};
 pub use count::{Casting, Crossings, count};
-pub use settings::{ObjectRays, Outside, RayRules, RaySettings};
+pub use hits::count_hits;
+pub use seen::seen;
+pub use settings::{ObjectRays, Outside, RayRules, RaySettings, RaySource};

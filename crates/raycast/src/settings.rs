@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RaySettings {
+    /// Whose rays tell free from unobserved.
+    pub source: RaySource,
     /// What a ray that ends outside the grid tells.
     pub outside: Outside,
     /// No crossing counts this near to the hit voxel, metres of L1 distance; 0: no rule.
@@ -19,6 +21,16 @@ pub struct RaySettings {
     pub object_rays: ObjectRays,
     /// A sweep at most this far from the keyframe saw the same air, seconds.
     pub same_time_s: f64,
+}
+
+/// Whose rays tell free from unobserved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RaySource {
+    /// Those that measured the points.
+    Lidar,
+    /// Those of the keyframe's cameras (GS-Occ3D): points are hits alone.
+    Camera,
 }
 
 /// What a ray that ends outside the grid tells.

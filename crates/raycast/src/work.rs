@@ -59,7 +59,7 @@ impl<'a> Work<'a> {
             Kind::WorldPart(placed) => placed.object.time,
             Kind::ObjectPart(..) | Kind::Current(..) | Kind::Hits(..) => return false,
         };
-        time.seconds_apart(instant.time) > same_time_s
+        time.is_some_and(|time| time.seconds_apart(instant.time) > same_time_s)
     }
 
     /// Casts the rays.

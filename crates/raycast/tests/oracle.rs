@@ -1,5 +1,6 @@
 //! `count` against a slow oracle: labels.md section 8 in plain loops, one ray after the other.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -9,7 +10,9 @@ use occlabel_core::{
     Level, ObjectSweep, PlacedObject, PointCloud, Pose, RayCounts, RigidMap, StandingBox,
     Timestamp, TrackId, traverse,
 };
-use occlabel_raycast::{Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, count};
+use occlabel_raycast::{
+    Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, RaySource, count,
+};
 use proptest::prelude::*;
 
 const ROAD: ClassId = ClassId(11);
@@ -456,7 +459,7 @@ impl Case {
             time: Timestamp(NOW),
             grid_from_world: self.grid_from_world,
             reference_lidar: self.reference_lidar,
-            background: background.iter().collect(),
+            background: background.iter().map(Cow::Borrowed).collect(),
             objects: placed.flat_map(|(track, sweeps)| self.placed(track, sweeps)).collect(),
             standing: self.tracks.iter().filter_map(|track| self.standing(track)).collect(),
         };
@@ -487,7 +490,7 @@ impl Case {
         sightings
             .map(|seen| ObjectSweep {
                 track: TrackId(1),
-                time: Timestamp(seen.time),
+                time: Some(Timestamp(seen.time)),
                 boxed: self.boxed(&seen.grid_from_seen_box, seen.size_m),
                 cloud: cloud(&seen.rays),
             })
@@ -633,6 +636,7 @@ fn settings() -> impl Strategy<Value = RaySettings> {
         |(outside, ignore_near_hit_m, ignore_near_origin_m, flat_ignore_dz_m, object_rays)| {
             let same_time_s = SAME_TIME_NS as f64 / 1e9;
             RaySettings {
+                source: RaySource::Lidar,
                 outside,
                 ignore_near_hit_m,
                 ignore_near_origin_m,

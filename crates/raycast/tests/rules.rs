@@ -6,7 +6,9 @@ use occlabel_core::{
     Instant, ObjectSweep, PlacedObject, PointCloud, Pose, RayCounts, StandingBox, Timestamp,
     TrackId,
 };
-use occlabel_raycast::{Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, count};
+use occlabel_raycast::{
+    Casting, Crossings, ObjectRays, Outside, RayRules, RaySettings, RaySource, count,
+};
 
 const ROAD: ClassId = ClassId(11);
 const POLE: ClassId = ClassId(15);
@@ -15,6 +17,7 @@ const NOW: i64 = 1_532_402_927_647_951_000;
 
 /// No rule at all.
 const PLAIN: RaySettings = RaySettings {
+    source: RaySource::Lidar,
     outside: Outside::Clip,
     ignore_near_hit_m: 0.0,
     ignore_near_origin_m: 0.0,
@@ -211,7 +214,7 @@ fn car(now: Option<f64>) -> Car {
 fn car_seen_from(lidar: f64, now: Option<f64>) -> Car {
     let cloud = ray([lidar - SEEN_AT, 0.0, 0.0], [-0.9, 0.0, 0.0], CAR);
     let (track, time) = (TrackId(1), Timestamp(NOW));
-    Car { object: ObjectSweep { track, time, boxed: car_box(SEEN_AT), cloud }, now }
+    Car { object: ObjectSweep { track, time: Some(time), boxed: car_box(SEEN_AT), cloud }, now }
 }
 
 fn car_box(x: f64) -> Box3 {

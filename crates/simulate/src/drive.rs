@@ -2,8 +2,8 @@
 
 use nalgebra::Point3;
 use occlabel_core::{
-    ClassId, ClassSet, Exposure, Fault, Keyframe, LIDAR_ORIGIN, PointCloud, PointLabel, Pose,
-    Scene, SweepHeader, Taxonomy, Timestamp, TrackId,
+    ClassId, ClassSet, Exposure, Fault, Keyframe, LIDAR_ORIGIN, PointCloud, PointLabel, PointsOf,
+    Pose, Scene, SweepHeader, Taxonomy, Timestamp, TrackId,
 };
 
 use crate::annotator::{Boxes, LabelledSweeps, LoggedPoses, Sightings};
@@ -268,6 +268,7 @@ fn headers(
                 LabelledSweeps::All => true,
                 LabelledSweeps::None => false,
             },
+            points_of: PointsOf::Moment,
         }
     };
     sweeps.iter().map(header).collect()

@@ -72,6 +72,7 @@ mod noise;
 mod overrides;
 mod pattern;
 mod ray;
+mod reconstruction;
 mod render;
 mod repeat;
 mod rotation;
@@ -100,6 +101,7 @@ pub use mover::Mover;
 pub use overrides::world_text_with;
 pub use pattern::{Beams, Pattern};
 pub use ray::{Impact, Ray};
+pub use reconstruction::{CloudPoint, Reconstruction, exposure_cloud};
 pub use render::{ClassImage, NO_CLASS, render};
 pub use shape::{Shape, ShapeFile};
 pub use shipped::{ShippedWorld, WORLDS, shipped_world};
@@ -110,6 +112,6 @@ pub use world::World;
 #[cfg(feature = "waymo-v2")]
 pub use write::write_waymo_v2;
 pub use write::{
-    Images, MeshNames, Output, Written, write_mcap, write_meshes, write_nuscenes,
-    write_semantickitti, write_waymo,
+    Images, MeshNames, Output, Written, write_cloud, write_coda, write_masks, write_mcap,
+    write_meshes, write_nuscenes, write_semantickitti, write_waymo,
 };

@@ -26,6 +26,8 @@ pub(crate) enum Kind {
     Camera,
     /// The drift of the ego's pose.
     Drift,
+    /// A pixel of an exposure.
+    Pixel,
     /// A mover's mesh at a keyframe.
     Mesh,
 }

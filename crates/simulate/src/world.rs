@@ -17,6 +17,7 @@ use crate::instant::{Instant, What};
 use crate::lidar::Lidar;
 use crate::model::with_models;
 use crate::mover::Mover;
+use crate::reconstruction::Reconstruction;
 use crate::shape::Shape;
 use crate::standing::standing;
 use crate::world_file::{WorldFile, ego_body};
@@ -55,6 +56,8 @@ pub struct World {
     pub cameras: Vec<WorldCamera>,
     /// What becomes of the drive on its way into a log.
     pub annotator: Annotator,
+    /// How a cloud is made of what its cameras see.
+    pub reconstruction: Reconstruction,
     pub(crate) standing: Bodies,
     pub(crate) ego_body: Option<(Arc<Shape>, Pose)>,
 }
@@ -155,8 +158,10 @@ fn build(file: WorldFile) -> Result<World, Fault> {
         static_classes,
         ego: file.ego,
         annotator: file.annotator,
+        reconstruction: file.reconstruction,
     };
     inside("annotator", world.annotator.check(&world.movers))?;
+    inside("reconstruction", world.reconstruction.check())?;
     check_sight(&world).map(|()| world)
 }
 

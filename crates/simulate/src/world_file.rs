@@ -13,6 +13,7 @@ use crate::ego::Ego;
 use crate::ground::Ground;
 use crate::lidar::LidarFile;
 use crate::mover::{Mover, Part, Path, Pivot};
+use crate::reconstruction::Reconstruction;
 use crate::repeat::RepeatWay;
 use crate::rotation::PoseFile;
 use crate::shape::{Shape, ShapeFile};
@@ -46,6 +47,8 @@ pub(crate) struct WorldFile {
     pub(crate) cameras: Vec<CameraFile>,
     #[serde(default)]
     pub(crate) annotator: Annotator,
+    #[serde(default)]
+    pub(crate) reconstruction: Reconstruction,
 }
 
 /// Something with a box annotation: `[[mover]]`.

@@ -65,6 +65,17 @@ impl BallotBox {
     #[inline]
     pub(crate) fn cast_for_track(&mut self, flat: usize, class: ClassId) {
         let ballot = self.cast(flat, class);
+        self.note_track(ballot);
+    }
+
+    /// Notes that a point that was counted before is one of the track that votes now.
+    pub(crate) fn claim_for_track(&mut self, flat: usize) {
+        let ballot = self.ballot_of[flat].checked_sub(1).expect("a voxel with a point");
+        self.note_track(ballot);
+    }
+
+    #[inline]
+    fn note_track(&mut self, ballot: u32) {
         let votes = &mut self.now[ballot as usize];
         if *votes == 0 {
             self.now_at.push(ballot);

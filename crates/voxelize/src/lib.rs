@@ -26,4 +26,4 @@ mod pool;
 mod voxelize;
 
 pub use pool::pool;
-pub use voxelize::{Vote, VoteRules, VoteSettings, voxelize};
+pub use voxelize::{Surfels, Vote, VoteRules, VoteSettings, voxelize};

@@ -1,5 +1,6 @@
 //! Class of a voxel (labels.md section 7).
 
+use std::borrow::Cow;
 use std::cmp::Reverse;
 
 use occlabel_core::{
@@ -16,6 +17,18 @@ use crate::ballot::{Ballot, BallotBox, TrackVote};
 pub struct VoteSettings {
     /// Which points compete.
     pub vote: Vote,
+    /// What a surfel of a reconstruction counts as.
+    pub surfels: Surfels,
+}
+
+/// What a surfel of a reconstruction counts as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Surfels {
+    /// A point at its centre.
+    Points,
+    /// Points all over the ellipse that it covers.
+    Extent,
 }
 
 /// Which points of a voxel compete for its class.
@@ -50,6 +63,7 @@ pub fn voxelize(
 ) -> VoxelGrid<Option<VoxelVote>> {
     let mut ballots = BallotBox::new(spec, rules.rank.len());
     cast_background(instant, spec, &mut ballots);
+    claim_painted(instant, spec, &mut ballots);
     cast_objects(instant, spec, &mut ballots);
     let mut votes = VoxelGrid::filled(spec, None);
     let values = votes.values_mut();
@@ -60,7 +74,7 @@ pub fn voxelize(
 fn cast_background(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
     let place = &RigidMap::from(&instant.grid_from_world);
     let reaches =
-        |sweep: &&&BackgroundSweep<ClassId>| sweep.bundles.whole_reach(spec, place).meets(spec);
+        |sweep: &&Cow<BackgroundSweep<ClassId>>| sweep.bundles.whole_reach(spec, place).meets(spec);
     for sweep in instant.background.iter().filter(reaches) {
         Level::best().run(CastSweep { sweep, place, spec, ballots });
     }
@@ -91,6 +105,27 @@ impl Kernel for CastSweep<'_> {
                 }
             }
         }
+    }
+}
+
+/// Instance by instance, and class by class: background points that masks told apart are their
+/// instances' own. They voted for their class with the rest.
+fn claim_painted(instant: &Instant, spec: &GridSpec, ballots: &mut BallotBox) {
+    let place = RigidMap::from(&instant.grid_from_world);
+    let mut claims: Vec<(TrackId, ClassId, usize)> = Vec::new();
+    for sweep in instant.background.iter().filter(|sweep| !sweep.brushes.is_empty()) {
+        let bundles = sweep.cloud.positions.chunks(BUNDLE);
+        let flats =
+            bundles.flat_map(|points| spec.flats_of(&place, points).into_iter().take(points.len()));
+        let points = flats.zip(&sweep.cloud.labels).zip(&sweep.brushes);
+        claims.extend(
+            points.filter_map(|((flat, class), brush)| Some((brush.instance()?, *class, flat?))),
+        );
+    }
+    claims.sort_unstable();
+    for of_instance in claims.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        of_instance.iter().for_each(|(_, _, flat)| ballots.claim_for_track(*flat));
+        ballots.close_track(of_instance[0].1, of_instance[0].0);
     }
 }
 
@@ -176,8 +211,8 @@ mod tests {
     use super::*;
     use nalgebra::{Point3, Vector3};
     use occlabel_core::{
-        AggregatedScene, BackgroundSweep, Box3, BoxGrowth, GrownBox, ObjectSweep, PointCloud, Pose,
-        Timestamp,
+        AggregatedScene, BackgroundSweep, Box3, BoxGrowth, Brush, GrownBox, ObjectSweep,
+        PointCloud, Pose, Timestamp,
     };
     use proptest::prelude::*;
     use std::cell::Cell;
@@ -206,7 +241,7 @@ mod tests {
     fn object(&(class, track): &(u8, u16)) -> ObjectSweep {
         let boxed = Box3 { world_from_box: Pose::identity(), size_m: Vector3::repeat(2.0) };
         let cloud = cloud(vec![ClassId(class)]);
-        ObjectSweep { track: TrackId(track), time: Timestamp(0), boxed, cloud }
+        ObjectSweep { track: TrackId(track), time: Some(Timestamp(0)), boxed, cloud }
     }
 
     fn vote(held: &Held, vote: Vote) -> Option<VoxelVote> {
@@ -256,6 +291,21 @@ mod tests {
     fn section_7_the_instance_is_the_leading_track_of_the_winning_class() {
         let tracks = vec![(CAR, 7), (CAR, 3), (CAR, 3), (PERSON, 1), (CAR, 7)];
         assert_eq!(vote(&Held { background: vec![], tracks }, Vote::Majority), won(CAR, 3));
+    }
+
+    #[test]
+    fn section_7_points_that_masks_told_apart_are_their_instances_own() {
+        let classes = [CAR, CAR, CAR, ROAD, CAR].map(ClassId).to_vec();
+        let mut sweep = BackgroundSweep::new(Timestamp(0), cloud(classes));
+        sweep.brushes = [9, 0, 8, 9, 8].map(Brush::of_instance).to_vec();
+        let scene = AggregatedScene::new(vec![sweep], Vec::new());
+        let movers = [ClassId(CAR)].into_iter().collect();
+        let voted = |vote| {
+            let rules = VoteRules { vote, movers: &movers, rank: &RANK };
+            *voxelize(&Instant::still(&scene), &spec(), &rules).at([0; 3])
+        };
+        assert_eq!(voted(Vote::Majority), won(CAR, 8));
+        assert_eq!(voted(Vote::MoversFirst), won(CAR, 8));
     }
 
     /// The oracle: count by scanning, in the words of the rule.

@@ -49,8 +49,12 @@ pub(crate) enum Format {
     Semantickitti,
     /// Argoverse 2 sensor logs.
     Av2,
+    /// Sequences in the layout of CODa, a robot's campus.
+    Coda,
     /// MCAP files, one scene each: ROS 1, ROS 2 and Foxglove messages.
     Mcap,
+    /// Reconstructed clouds of points or surfels (PLY, PCD, LAS), with poses, cameras and tracks.
+    Cloud,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -26,8 +26,13 @@ pub(crate) struct QualityArgs {
     pub(crate) limits: Option<PathBuf>,
     /// Keep every N-th sweep of each lidar out of the fusion, and ask it afterwards.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..))]
-    #[arg(requires_all = ["format", "input"], required_unless_present = "world_truth")]
+    #[arg(requires_all = ["format", "input"])]
+    #[arg(required_unless_present_any = ["world_truth", "painted"])]
     pub(crate) held_out: Option<u16>,
+    /// Compare the classes that masks of images give labelled points with the points' labels.
+    #[arg(long, requires_all = ["format", "input"])]
+    #[arg(conflicts_with_all = ["world_truth", "held_out", "trees"])]
+    pub(crate) painted: bool,
     #[command(flatten)]
     pub(crate) log: Option<LogArgs>,
     #[command(flatten)]
@@ -65,6 +70,10 @@ mod tests {
         };
         assert!(parses("tree --world-truth log --quick --json --jobs 2"));
         assert!(parses("--held-out 5 --format nuscenes --input log --preset paper"));
+        assert!(parses("--painted --format mcap --input log --set paint.masks=masks --json"));
+        assert!(
+            !parses("--painted --format mcap --input log --held-out 5") && !parses("--painted")
+        );
         for unused in ["--preset paper", "--set a.b=1", "--range-noise-m 0.5", "--input log"] {
             assert!(!parses(&format!("tree --world-truth log {unused}")), "{unused}");
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use occlabel_core::{Fault, Loss, Refusal, Scene, SweepHeader};
+use occlabel_core::{Fault, Loss, PointsOf, Refusal, Scene, SweepHeader};
 use occlabel_logs::{
     Finding, Inventory, MissingFile, SceneSurvey, Severity, SweepSurvey, UnknownLabels, UnknownSum,
     check_images, check_poses, unknown_hint, without_stand_in,
@@ -71,7 +71,7 @@ impl SceneCheck<'_> {
         let refused = scene.refused.iter().map(|refusal| self.refused(refusal));
         let missing = inventory.missing.iter().map(MissingFile::fault);
         let missing = inventory.summary().into_iter().chain(missing);
-        let unlabelled = self.opened.rules.check_labels(scene).err();
+        let unlabelled = self.opened.rules.check(scene).err();
         // Without a class for them that is an error already.
         let is_new = |lack: &Fault| unlabelled.as_ref().is_none_or(|told| told.rule != lack.rule);
         let lacks = lacks(scene, &self.opened.config).into_iter().filter(is_new);
@@ -108,7 +108,11 @@ impl SceneCheck<'_> {
     fn look(&self, scene: &Scene, sweep: &SweepHeader) -> Look {
         let points = self.opened.source.read_sweep(sweep)?;
         let ego_box = self.opened.rules.split.ego_box_m.as_ref();
-        let survey = SweepSurvey::of(sweep, &points.cloud, &scene.tracks, ego_box);
+        let survey = match sweep.points_of {
+            PointsOf::Moment => SweepSurvey::of(sweep, &points.cloud, &scene.tracks, ego_box),
+            // No lidar saw the ground, or the boxes of that time, from there.
+            PointsOf::Nothing | PointsOf::World | PointsOf::Track(_) => SweepSurvey::default(),
+        };
         Ok((survey, points.unknown, points.warnings))
     }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
 use occlabel_dialects::KeyframeInfo;
 use occlabel_disk as disk;
-use occlabel_labels::{PoseRecord, SceneRecord, TrackRecord};
+use occlabel_labels::{InputRecord, PoseRecord, SceneRecord, TrackRecord};
 use occlabel_logs::{Inventory, MissingFile, check_poses};
 use occlabel_pipeline::{Cost, MemoryModel, SceneWork};
 use occlabel_simulate::World;
@@ -29,6 +29,8 @@ pub(crate) struct PlannedScene {
     pub(crate) wanted: BTreeSet<String>,
     /// Files of its sweeps, relative to the log's root, with their sizes.
     pub(crate) files: Vec<(String, u64)>,
+    /// The masks that paint its points.
+    pub(crate) masks: Vec<InputRecord>,
     /// Who is known by their surface.
     pub(crate) meshes: PlannedMeshes,
     /// How many keyframes at once, and in how many shards of rays each.
@@ -70,11 +72,12 @@ impl PlannedScene {
             let fault = Fault::new("no-keyframes", "the scene", "keyframes to label", "none");
             findings.warn(job.console, name, &fault);
         }
-        job.opened.rules.check_labels(&scene).map_err(Refused::Configuration)?;
+        job.opened.rules.check(&scene).map_err(Refused::Configuration)?;
         warn_of(job, &scene, findings);
         lose_refused(job, &scene, findings)?;
         let inventory = Inventory::take(&*job.opened.source, &job.args.log.input, &scene);
         lose_missing(job, &scene, &inventory, findings)?;
+        let masks = masks(job, &scene, findings).map_err(|fault| Refused::Broken(vec![fault]))?;
         let meshes = PlannedMeshes::plan(job, &scene, findings);
         let meshes = meshes.map_err(|fault| Refused::Broken(vec![fault]))?;
         let points = job.opened.source.scene_points(&scene);
@@ -91,6 +94,7 @@ impl PlannedScene {
             at_once,
             memory_bytes: model.bytes(at_once.0, at_once.1),
             files: inventory.present,
+            masks,
             sweeps: scene.sweeps.len(),
             told: told_by(&scene),
             points,
@@ -151,6 +155,24 @@ fn warn_of(job: &Job, scene: &Scene, findings: &mut Findings) {
     let odd = check_poses(scene, None);
     let faults = scene.warnings.iter().chain(&lacks).chain(&odd);
     faults.for_each(|fault| findings.warn(job.console, &scene.name, fault));
+}
+
+/// The masks of a scene. If masks are asked for, and it has none, that is told.
+fn masks(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<Vec<InputRecord>, Fault> {
+    let Some(masks) = &job.opened.masks else { return Ok(Vec::new()) };
+    let record = |file: &String| {
+        let record = InputRecord::of_sweep(masks.folder(), file)?.of_scene(&scene.name);
+        Ok(InputRecord { path: format!("{}/{file}", job.opened.config.paint.masks), ..record })
+    };
+    let found = masks.of_scene(scene)?;
+    let records: Vec<_> = found.files().map(record).collect::<Result<_, Fault>>()?;
+    if records.is_empty() {
+        let place = masks.folder().display().to_string();
+        let expected = "masks of the scene's exposures";
+        let fault = Fault::new("no-masks", place, expected, "none: nothing is painted");
+        findings.warn(job.console, &scene.name, &fault);
+    }
+    Ok(records)
 }
 
 fn refused_load(job: &Job, fault: Fault) -> Refused {
@@ -234,8 +256,9 @@ fn work(job: &Job, scene: &Scene, points: u64, wanted: &BTreeSet<String>) -> Vec
 fn memory_model(job: &Job, scene: &Scene, points: u64, meshes: &PlannedMeshes) -> MemoryModel {
     let evidence = job.args.evidence || job.targets.need_evidence();
     let reading_bytes = disk::reading_bytes(&job.args.log.input, job.threads);
-    MemoryModel::new(points, job.targets.largest(), scene.cameras.len(), evidence)
-        .beside(reading_bytes + meshes.memory_bytes())
+    let model = MemoryModel::new(points, job.targets.largest(), scene.cameras.len(), evidence)
+        .beside(reading_bytes + meshes.memory_bytes());
+    if job.opened.rules.window.radius_m.is_some() { model.cutting() } else { model }
 }
 
 /// How many keyframes fit into memory at once: into `--memory`, else into what the machine has left.

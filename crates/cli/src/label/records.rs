@@ -29,8 +29,10 @@ pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
         };
         scene.files.iter().map(record)
     });
-    let inputs =
-        tables.chain(sweeps).chain(mesh_records(job, plan)).collect::<Result<Vec<_>, Fault>>()?;
+    let masks = plan.scenes.iter().flat_map(|scene| scene.masks.iter().cloned().map(Ok));
+    let meshes = mesh_records(job, plan);
+    let inputs = tables.chain(sweeps).chain(masks).chain(meshes);
+    let inputs = inputs.collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config_json(&job.opened.config), inputs))
 }
 

@@ -6,7 +6,10 @@ use std::time::Instant;
 
 use occlabel_core::{AggregatedScene, ClassId, Fault, Keyframe, OccupancyLabels, Scene, Timestamp};
 use occlabel_labels::{FileRecord, Journal, JournalEntry, LabelTree, TreePath, WriterLock};
-use occlabel_pipeline::{LabelOptions, LabelledKeyframe, Lenses, aggregate_scene, label_keyframe};
+use occlabel_pipeline::{
+    LabelOptions, LabelledKeyframe, Lenses, MaskedExposures, aggregate_painted_scene,
+    label_keyframe,
+};
 use serde_json::Value;
 
 use crate::exit::Stop;
@@ -20,6 +23,7 @@ use crate::label::tally::{EmptyBox, Summary, Tally, VoxelCounts};
 use crate::label::target_dialect::Source;
 use crate::label::targets::{KeyframeFiles, LabelledGrid};
 use crate::label::workers;
+use crate::mask_reader::MaskReader;
 use crate::progress::Progress;
 
 /// A scene to label.
@@ -180,9 +184,13 @@ impl SceneRun<'_> {
     ) -> Result<(AggregatedScene<ClassId>, Book), Fault> {
         let (mut clock, rules) = (meter.clock(), &self.job.opened.rules);
         let reader = SweepReader::new(self.job, self.interrupt);
-        let read = |sweep: &_| reader.read(sweep);
-        let aggregated = aggregate_scene(scene, rules, read, |stage| clock.enter(stage))?;
-        let book = reader.close();
+        let masks = MaskReader::new(self.job.opened.masks.as_ref(), scene)?;
+        let masks = masks.map(|masks| masks.of_run(self.job.skips(), self.interrupt));
+        let masked = masks.as_ref().map_or_else(MaskedExposures::none, MaskReader::exposures);
+        let (read, enter) = (|sweep: &_| reader.read(sweep), |stage| clock.enter(stage));
+        let aggregated = aggregate_painted_scene(scene, rules, read, &masked, enter)?;
+        drop(masked);
+        let book = reader.close(masks.map(MaskReader::lost).unwrap_or_default());
         tally.sweeps = book.sweeps(self.planned.files.iter().map(|(_, bytes)| bytes).sum());
         tally.points_read = book.points;
         tally.not_finite = book.not_finite();
@@ -306,8 +314,10 @@ fn boxes_without_points(scene: &Scene, aggregated: &AggregatedScene<ClassId>) ->
     let mut empty = Vec::new();
     for track in &scene.tracks {
         let times = track.boxes.iter().map(|(time, _)| *time);
-        let is_empty =
-            |time: &Timestamp| sweeps.contains(time) && !held.contains(&(track.id, *time));
+        let is_empty = |time: &Timestamp| {
+            sweeps.contains(time)
+                && ![None, Some(*time)].iter().any(|at| held.contains(&(track.id, *at)))
+        };
         empty.extend(
             times
                 .filter(is_empty)

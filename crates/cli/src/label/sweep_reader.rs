@@ -27,6 +27,8 @@ pub(crate) struct Book {
     warnings: Vec<Fault>,
     /// Sweeps that were left out, by their id.
     lost: BTreeMap<String, Fault>,
+    /// Masks that were left out.
+    lost_masks: Vec<Fault>,
     /// Points without finite coordinates, by the file of their sweeps.
     not_finite: BTreeMap<String, usize>,
 }
@@ -70,9 +72,10 @@ impl<'a> SweepReader<'a> {
         self.job.skips() || (is_missing && self.job.args.allow_missing_sweeps)
     }
 
-    /// The book, in an order that does not depend on threads.
-    pub(crate) fn close(self) -> Book {
-        let mut book = self.book.into_inner().expect("no reader panicked");
+    /// The book, in an order that does not depend on threads, with the masks that were left out.
+    pub(crate) fn close(self, lost_masks: Vec<Fault>) -> Book {
+        let book = self.book.into_inner().expect("no reader panicked");
+        let mut book = Book { lost_masks, ..book };
         book.warnings
             .sort_by(|a, b| (&a.place, a.rule, &a.record).cmp(&(&b.place, b.rule, &b.record)));
         book
@@ -94,7 +97,7 @@ impl Book {
     pub(crate) fn tell(&self, job: &Job, scene: &str, findings: &mut Findings) {
         let lost = self.lost.values().filter(|fault| fault.rule != "missing-file");
         self.warnings.iter().for_each(|fault| findings.warn(job.console, scene, fault));
-        lost.for_each(|fault| findings.lose(job.console, scene, fault));
+        lost.chain(&self.lost_masks).for_each(|fault| findings.lose(job.console, scene, fault));
     }
 
     /// What a keyframe lost with its reference sweep, if that was left out.

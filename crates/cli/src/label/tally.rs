@@ -178,6 +178,7 @@ impl Tally {
 fn class_from_json(class_from: &ClassCounts) -> Value {
     json!({
         "labels": class_from.labels,
+        "masks": class_from.masks,
         "boxes": class_from.boxes,
         "neighbours": class_from.neighbours,
         "unknown": class_from.unknown,

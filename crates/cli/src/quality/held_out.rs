@@ -17,6 +17,7 @@ pub(crate) fn run(args: &QualityArgs, console: &Console) -> Result<Outcome, Stop
     let (every, log) = asked_for(args).map_err(Stop::usage)?;
     let threads = start_threads(args.jobs);
     let opened = open(log, &args.config)?;
+    check_rays(&opened).map_err(Stop::usage)?;
     let noise_m = args.range_noise_m;
     let run = HeldOutRun { opened: &opened, root: &log.input, every, noise_m, threads, console };
     let mut scenes = BTreeMap::new();
@@ -46,6 +47,15 @@ fn asked_for(args: &QualityArgs) -> Result<(usize, &LogArgs), Fault> {
             Err(Fault::new("usage", "command line", expected, "less"))
         }
     }
+}
+
+/// Held-out sweeps are asked along their rays: labels that cameras alone make have nothing to answer.
+fn check_rays(opened: &Opened) -> Result<(), Fault> {
+    if opened.rules.casts_lidar_rays() {
+        return Ok(());
+    }
+    let expected = "\"lidar\", whose rays are held out";
+    Err(Fault::new("config", "raycast.source", expected, "\"camera\""))
 }
 
 fn total(scenes: &BTreeMap<String, SceneTally>) -> SceneTally {

@@ -13,12 +13,14 @@ use occlabel_evaluate::held_out::{
 };
 use occlabel_logs::Inventory;
 use occlabel_pipeline::{
-    LabelOptions, Lenses, aggregate_scene, label_keyframe, sort_scene, standing_at,
+    LabelOptions, Lenses, MaskedExposures, aggregate_painted_scene, label_keyframe, sort_scene,
+    standing_at,
 };
 
 use crate::console::Console;
 use crate::exit::Stop;
 use crate::input::Opened;
+use crate::mask_reader::MaskReader;
 
 /// A held-out sweep farther than this from every keyframe is not asked, seconds: keyframes of
 /// nuScenes are 0.5 s apart, and what moves without a box should not have gone far.
@@ -66,7 +68,9 @@ impl HeldOutRun<'_> {
         let divided = self.divide(self.load(name)?)?;
         let mut heard = SceneTally { sweeps: divided.held.background.len(), ..Default::default() };
         for (at, keyframe) in divided.scene.keyframes.iter().enumerate() {
-            if divided.held.background.iter().any(|sweep| self.asks(&divided, sweep.time, at)) {
+            if (divided.held.background.iter())
+                .any(|sweep| sweep.time.is_some_and(|time| self.asks(&divided, time, at)))
+            {
                 heard.keyframes += 1;
                 heard.tally += &self.ask_keyframe(&divided, at, keyframe);
             }
@@ -93,17 +97,24 @@ impl HeldOutRun<'_> {
             pairs.filter(|(_, held)| **held).map(|(sweep, _)| sweep.source_id.as_str()).collect();
         let is_held = |sweep: &SweepHeader| held.contains(sweep.source_id.as_str());
         let rest = without(&scene, is_held);
-        rules.check_labels(&rest).map_err(Stop::usage)?;
+        rules.check(&rest).map_err(Stop::usage)?;
         let settings = self.settings(rest.has_point_labels());
-        let fused = aggregate_scene(
-            &scene,
-            rules,
-            |sweep| if is_held(sweep) { Ok(None) } else { self.read(sweep) },
-            |_| {},
-        )?;
+        let fused = self.fuse(&scene, is_held)?;
         let read_held = |sweep: &_| if is_held(sweep) { self.read(sweep) } else { Ok(None) };
         let held = sort_scene(&scene, rules, read_held)?;
         Ok(Divided { scene, fused, held, settings })
+    }
+
+    /// The sweeps that are not held out, painted where images have masks.
+    fn fuse(
+        &self,
+        scene: &Scene,
+        is_held: impl Fn(&SweepHeader) -> bool + Sync,
+    ) -> Result<AggregatedScene<ClassId>, Fault> {
+        let masks = MaskReader::new(self.opened.masks.as_ref(), scene)?;
+        let masked = masks.as_ref().map_or_else(MaskedExposures::none, MaskReader::exposures);
+        let read = |sweep: &_| if is_held(sweep) { Ok(None) } else { self.read(sweep) };
+        aggregate_painted_scene(scene, &self.opened.rules, read, &masked, |_| {})
     }
 
     fn read(&self, sweep: &SweepHeader) -> Result<Option<PointCloud<PointLabel>>, Fault> {

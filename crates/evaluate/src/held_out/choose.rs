@@ -30,7 +30,7 @@ pub fn nearest_keyframe(keyframes: &[Timestamp], time: Timestamp, within_s: f64)
 
 #[cfg(test)]
 mod tests {
-    use occlabel_core::Pose;
+    use occlabel_core::{PointsOf, Pose};
 
     use super::*;
 
@@ -43,6 +43,7 @@ mod tests {
             world_from_ego: Pose::identity(),
             ego_from_lidar: Pose::identity(),
             labelled: false,
+            points_of: PointsOf::Moment,
         }
     }
 

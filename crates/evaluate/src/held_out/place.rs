@@ -57,8 +57,8 @@ pub fn place(
     moment: &JudgedMoment,
     is_asked: impl Fn(Timestamp) -> bool,
 ) -> Vec<HeldOutRay> {
-    let background = held.background.iter().filter(|sweep| is_asked(sweep.time));
-    let objects = held.objects.iter().filter(|object| is_asked(object.time));
+    let background = held.background.iter().filter(|sweep| sweep.time.is_some_and(&is_asked));
+    let objects = held.objects.iter().filter(|object| object.time.is_some_and(&is_asked));
     let mut rays: Vec<_> = background.flat_map(|sweep| background_rays(sweep, moment)).collect();
     rays.extend(objects.flat_map(|object| track_rays(object, moment)));
     rays
@@ -69,7 +69,8 @@ fn background_rays(
     moment: &JudgedMoment,
 ) -> impl Iterator<Item = HeldOutRay> {
     let place = RigidMap::from(&moment.grid_from_world);
-    let is_of_another_time = sweep.time.seconds_apart(moment.time) > moment.same_time_s;
+    let is_of_another_time =
+        sweep.time.is_some_and(|time| time.seconds_apart(moment.time) > moment.same_time_s);
     let cloud = &sweep.cloud;
     (0..cloud.len()).map(move |i| HeldOutRay {
         origin: place.apply(&cloud.origin(i)),
@@ -101,7 +102,8 @@ fn track_rays(object: &ObjectSweep, moment: &JudgedMoment) -> impl Iterator<Item
 fn keeps_shape(object: &ObjectSweep, moment: &JudgedMoment) -> bool {
     let class = object.cloud.labels.first();
     !class.is_some_and(|class| moment.deformable.contains(*class))
-        || object.time.seconds_apart(moment.time) <= moment.deformable_window_s
+        || (object.time)
+            .is_none_or(|time| time.seconds_apart(moment.time) <= moment.deformable_window_s)
 }
 
 #[cfg(test)]
@@ -130,7 +132,7 @@ mod tests {
         let boxed = standing(track, 10.0).boxed;
         let (origin, point) = (Point3::new(-10.0, 0.0, 0.0), Point3::new(0.5, 0.0, 0.0));
         let cloud = PointCloud::from_one_origin(origin, vec![point], vec![class]);
-        ObjectSweep { track: TrackId(track), time: Timestamp(400_000_000), boxed, cloud }
+        ObjectSweep { track: TrackId(track), time: Some(Timestamp(400_000_000)), boxed, cloud }
     }
 
     fn held(objects: Vec<ObjectSweep>) -> AggregatedScene<Option<ClassId>> {

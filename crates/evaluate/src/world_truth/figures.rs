@@ -124,6 +124,7 @@ pub(crate) const FIGURES: &[Figure] = &[
     share!("A6", "mask_lidar_iou", "lidar, with exact visibility", MASKS, false, MaskLidar),
     share!("A6c", "mask_camera_iou", "cameras, the rule on exact voxels", MASKS, false, MaskCamera),
     share!("A6g", "mask_camera_sight_iou", "cameras, true lines of sight", MASKS, false, MaskCameraSight),
+    share!("A10", "occupied_camera_iou", "occupied, where cameras look", MASKS, false, OccupiedCamera),
     size!("FE", "flow_error_mps", "end-point error: mean", MOTION, mean, FlowError),
     size!("FEp", "flow_error_p95_mps", "... 95th percentile", MOTION, percentile_95, FlowError),
     size!("FEc", "flow_error_right_class_mps", "... mean where the class is right", MOTION, mean, FlowErrorRightClass),

@@ -55,6 +55,7 @@ pub fn judge(labels: &JudgedLabels, known: &KnownWorld, scale: &Scale) -> Result
         truth: known.truth.values(),
         camera: exact_camera_mask(known, scale),
         has_sight: !known.eyes.is_empty() && known.truth.values().iter().any(|t| t.sight != 0),
+        has_ends: known.truth.values().iter().any(|truth| truth.camera_ends > 0),
         scale,
     };
     let mut rings = bench.rings();
@@ -70,6 +71,7 @@ struct Bench<'a> {
     truth: &'a [VoxelTruth],
     camera: Option<Vec<bool>>,
     has_sight: bool,
+    has_ends: bool,
     scale: &'a Scale,
 }
 
@@ -125,6 +127,7 @@ impl Bench<'_> {
         class(&pair, ring);
         air(&pair, ring);
         self.masks(flat, &pair, ring);
+        self.in_view(flat, &pair, ring);
         if let Some(flow) = self.labels.flow {
             motion(&pair, flow.values()[flat], ring);
         }
@@ -173,6 +176,15 @@ impl Bench<'_> {
         if self.has_sight {
             let is_seen = pair.truth.sight != 0 && pair.is_observed;
             ring.overlap(Question::MaskCameraSight, pair.is_camera_seen, is_seen);
+        }
+    }
+
+    /// A10: what is labelled occupied where cameras look, and what they see well enough to ask for.
+    fn in_view(&self, flat: usize, pair: &Pair, ring: &mut Ring) {
+        let Some(camera) = self.camera.as_ref().filter(|_| self.has_ends) else { return };
+        let is_asked = pair.truth.solid > 0.0 && pair.truth.camera_ends >= OBSERVABLE_ENDS;
+        if is_asked || (camera[flat] && pair.label.is_some()) {
+            ring.count(Question::OccupiedCamera, None, pair.is_true_positive());
         }
     }
 }

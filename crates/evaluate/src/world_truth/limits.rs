@@ -35,7 +35,7 @@ struct LimitsFile {
 
 /// The figures that need denser rays or cameras, and are left out where neither is asked for.
 pub const COSTLY_FIGURES: &[&str] =
-    &["surface_recall_dense", "mask_camera_iou", "mask_camera_sight_iou"];
+    &["surface_recall_dense", "mask_camera_iou", "mask_camera_sight_iou", "occupied_camera_iou"];
 
 /// A figure that does not keep its limit, or could not be asked at all.
 #[derive(Clone, Debug, PartialEq)]

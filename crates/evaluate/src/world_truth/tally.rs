@@ -27,6 +27,7 @@ pub(crate) enum Question {
     MaskLidar,
     MaskCamera,
     MaskCameraSight,
+    OccupiedCamera,
     FlowMissing,
     StaticFlow,
     People,

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader, Timestamp};
+use occlabel_core::{Fault, Loss, PointsOf, Pose, Scene, SweepHeader, Timestamp};
 use occlabel_disk as disk;
 
 use super::cameras::{LENSES, read_cameras};
@@ -66,7 +66,7 @@ pub(super) fn build_scene(
     let keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &exposures, &notes)?;
     let (warnings, refused) = notes.finish();
     let name = name.to_owned();
-    Ok(Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused })
+    Ok(Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused })
 }
 
 /// Poses by time; one that is none is left out and noted.
@@ -102,5 +102,6 @@ fn sweep_header(
         ego_from_lidar: lidars.ego_from_up,
         labelled: false,
         file,
+        points_of: PointsOf::Moment,
     })
 }

@@ -19,7 +19,7 @@ mod survey;
 mod thickness;
 mod unknown;
 
-use occlabel_core::{Fault, Scene};
+use occlabel_core::{Fault, Scene, SweepHeader};
 
 pub use severity::{Finding, Severity};
 pub use survey::{SceneSurvey, SweepSurvey};
@@ -29,12 +29,15 @@ pub use unknown::UnknownSum;
 /// lived with, but labels are worse for it. Knowing how thick the ground comes out of the sweeps,
 /// metres, tells more.
 pub fn check_poses(scene: &Scene, ground_thickness_m: Option<f64>) -> Vec<Fault> {
-    let mut faults = rotation::rotation_steps(&scene.sweeps);
-    faults.extend(rotation::tilted(&scene.sweeps));
-    faults.extend(heading::heading(&scene.sweeps));
-    faults.extend(jumps::pose_jumps(&scene.sweeps));
-    faults.extend(gaps::sweep_gaps(&scene.sweeps));
-    faults.extend(level::level_world(&scene.sweeps, ground_thickness_m));
+    // Points of no time have no pose.
+    let posed = scene.sweeps.iter().filter(|sweep| !sweep.points_of.is_timeless());
+    let sweeps: Vec<SweepHeader> = posed.cloned().collect();
+    let mut faults = rotation::rotation_steps(&sweeps);
+    faults.extend(rotation::tilted(&sweeps));
+    faults.extend(heading::heading(&sweeps));
+    faults.extend(jumps::pose_jumps(&sweeps));
+    faults.extend(gaps::sweep_gaps(&sweeps));
+    faults.extend(level::level_world(&sweeps, ground_thickness_m));
     faults
 }
 

@@ -12,7 +12,7 @@ use super::thickness::{Thickness, ground_heights};
 use super::{Finding, Severity};
 
 /// What is kept of a sweep: little, whatever it holds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct SweepSurvey {
     ground: Option<GroundView>,
     heights_m: BTreeMap<(i64, i64), f32>,

@@ -1,7 +1,7 @@
 //! A drive for the tests of the checks.
 
 use nalgebra::{Translation3, UnitQuaternion};
-use occlabel_core::{Pose, SweepHeader, Timestamp};
+use occlabel_core::{PointsOf, Pose, SweepHeader, Timestamp};
 
 /// Sweeps at 10 Hz along x, on the ground, which is not at the world's height 0.
 pub(super) fn straight(sweeps: usize, speed_mps: f64) -> Vec<SweepHeader> {
@@ -13,6 +13,7 @@ pub(super) fn straight(sweeps: usize, speed_mps: f64) -> Vec<SweepHeader> {
         world_from_ego: pose([place as f64 * speed_mps / 10.0, 0.0, 5.0], [0.0; 3]),
         ego_from_lidar: pose([1.0, 0.0, 2.0], [0.0; 3]),
         labelled: false,
+        points_of: PointsOf::Moment,
     };
     (0..sweeps).map(sweep).collect()
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use occlabel_core::{Fault, Loss, Pose, Scene, SweepHeader};
+use occlabel_core::{Fault, Loss, PointsOf, Pose, Scene, SweepHeader};
 use occlabel_disk as disk;
 
 use super::LIDAR;
@@ -60,7 +60,8 @@ impl Loaded {
             keyframes(&options.keyframes, name, &sweeps, |_| false, &exposures, &notes)?;
         let (warnings, refused) = notes.finish();
         let name = name.to_owned();
-        let scene = Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused };
+        let scene =
+            Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused };
         Ok(Self { scene, motions, windows })
     }
 }
@@ -123,6 +124,7 @@ impl Parts<'_> {
             world_from_ego,
             ego_from_lidar: self.calibration.ego_from_lidar,
             labelled: is_fused || disk::is_file(&self.root.join(self.drive.labels(frame))),
+            points_of: PointsOf::Moment,
         })
     }
 

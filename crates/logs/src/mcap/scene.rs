@@ -62,7 +62,8 @@ impl Loaded {
         let tracks = tracks(&recording, (read, settings), &roles, &mut notes)?;
         let (warnings, refused) = notes.finish();
         let name = name.to_owned();
-        let scene = Scene { name, sweeps, tracks, cameras, keyframes, warnings, refused };
+        let scene =
+            Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused };
         Ok(Self { scene, recording, roles, pictures: OnceLock::new() })
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use occlabel_core::{Fault, Loss, McapSettings, Pose, SweepHeader, Timestamp};
+use occlabel_core::{Fault, Loss, McapSettings, PointsOf, Pose, SweepHeader, Timestamp};
 
 use super::container::MessageAt;
 use super::frames::checked_pose;
@@ -42,6 +42,7 @@ pub(super) fn sweep_headers(
             world_from_ego,
             ego_from_lidar,
             labelled: label_field(settings, &cloud.fields).is_some(),
+            points_of: PointsOf::Moment,
         };
         sweeps.push((header, cloud.at));
     }

@@ -73,17 +73,29 @@ pub(super) fn exposures(
             continue;
         };
         let pose = world_from_camera(log, camera, image, notes)?;
-        if let Some(world_from_camera) = notes.accept(Loss::Camera, pose) {
-            let file = Some(image.row.filename.clone());
-            exposures.push(Exposure {
-                camera: index,
-                time: image.time,
-                world_from_camera,
-                image: file,
-            });
-        }
+        let pose = notes.accept(Loss::Camera, pose);
+        exposures.extend(pose.map(|pose| exposure(index, image, pose)));
     }
     Ok(exposures)
+}
+
+/// Of each camera everything that it saw and that can be used, in order of time.
+pub(super) fn all_exposures(log: &NuScenesLog, cameras: &[SceneCamera<'_>]) -> Vec<Vec<Exposure>> {
+    let of_camera = |(index, camera): (usize, &SceneCamera<'_>)| {
+        // What is odd about them is told of keyframes, which need them.
+        let mut unheard = Notes::default();
+        let expose = |image: &Capture<'_>| {
+            let pose = world_from_camera(log, camera, image, &mut unheard).ok()?.ok()?;
+            Some(exposure(index, image, pose))
+        };
+        camera.images.iter().filter_map(expose).collect()
+    };
+    cameras.iter().enumerate().map(of_camera).collect()
+}
+
+fn exposure(camera: usize, image: &Capture<'_>, world_from_camera: Pose) -> Exposure {
+    let file = Some(image.row.filename.clone());
+    Exposure { camera, time: image.time, world_from_camera, image: file }
 }
 
 /// The files of a scene's images; none where the rows cannot be followed.

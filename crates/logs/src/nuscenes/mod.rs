@@ -42,6 +42,7 @@ pub(crate) use npz::read_data;
 pub(crate) use npz::{read_header, text_of};
 #[cfg(any(test, fuzzing))]
 pub(crate) use optics::decode as decode_mask;
+pub(crate) use optics::{LensFields, mask_of};
 #[cfg(any(test, fuzzing))]
 pub(crate) use records::Records;
 

@@ -8,6 +8,7 @@ use occlabel_core::camera::{
     BodyMask, BrownConrady, CameraError, CameraModel, Intrinsics, KannalaBrandt, Mei, Ocam, Pinhole,
 };
 use occlabel_core::{Camera, Fault};
+use serde::Deserialize;
 
 use super::captures::Capture;
 use super::number::{Number, plain};
@@ -35,16 +36,48 @@ pub(super) fn camera_of(root: &Path, image: &Capture<'_>) -> Result<Camera, Faul
 }
 
 fn model_of(calibration: &Row<CalibratedSensor>) -> Result<CameraModel, Fault> {
-    let name = calibration.camera_model.as_deref().unwrap_or("pinhole");
-    let expected = format!("a calibration of the camera model `{name}`");
-    let refuse = |Defect(found)| calibration.fault("camera-model", expected, found);
-    model_named(name, calibration).map_err(refuse)
+    let lens = LensFields {
+        camera_intrinsic: calibration.camera_intrinsic.clone(),
+        camera_model: calibration.camera_model.clone(),
+        camera_distortion: calibration.camera_distortion.clone(),
+        ocam: calibration.ocam.clone(),
+    };
+    lens.model().map_err(|found| calibration.fault("camera-model", lens.expected(), found))
+}
+
+/// A camera's lens, as calibrations tell it.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct LensFields {
+    #[serde(default)]
+    camera_intrinsic: Vec<Vec<Number>>,
+    camera_model: Option<String>,
+    camera_distortion: Option<Vec<Number>>,
+    ocam: Option<OcamFields>,
+}
+
+impl LensFields {
+    /// The model.
+    ///
+    /// # Errors
+    /// What was found, if the calibration is none of the named model.
+    pub(crate) fn model(&self) -> Result<CameraModel, String> {
+        model_named(self.name(), self).map_err(|Defect(found)| found)
+    }
+
+    /// What a calibration has to be.
+    pub(crate) fn expected(&self) -> String {
+        format!("a calibration of the camera model `{}`", self.name())
+    }
+
+    fn name(&self) -> &str {
+        self.camera_model.as_deref().unwrap_or("pinhole")
+    }
 }
 
 /// What an absent `camera_distortion` means.
 const NO_DISTORTION: [f64; 4] = [0.0; 4];
 
-fn model_named(name: &str, calibration: &CalibratedSensor) -> Result<CameraModel, Defect> {
+fn model_named(name: &str, calibration: &LensFields) -> Result<CameraModel, Defect> {
     let distortion = calibration.camera_distortion.as_deref().map_or(NO_DISTORTION.into(), reals);
     let intrinsics = || intrinsics(&calibration.camera_intrinsic);
     Ok(match name {
@@ -114,14 +147,28 @@ fn read_mask(
     file: &str,
     [width, height]: [u32; 2],
 ) -> Result<BodyMask, Fault> {
-    let expected = format!("a mask of {width} x {height} pixels");
-    let fault = |found: String| {
-        Fault::new("camera-mask", file, &expected, found).record(calibration.token.to_string())
-    };
     if let Some(defect) = name_defect(file) {
         let found = format!("`{file}`, {defect}");
         return Err(calibration.fault("file-name", "a path below the log's root", found));
     }
+    let record = |fault: Fault| match fault.rule {
+        "camera-mask" => fault.record(calibration.token.to_string()),
+        _ => fault,
+    };
+    mask_of(root, file, [width, height]).map_err(record)
+}
+
+/// The body mask of a file below the log's root.
+///
+/// # Errors
+/// If it cannot be read, or is of another size.
+pub(crate) fn mask_of(
+    root: &Path,
+    file: &str,
+    [width, height]: [u32; 2],
+) -> Result<BodyMask, Fault> {
+    let expected = format!("a mask of {width} x {height} pixels");
+    let fault = |found: String| Fault::new("camera-mask", file, &expected, found);
     let bytes = read_file(root, file)?;
     let pixels = decode(bytes, width, height).map_err(fault)?;
     let covered = pixels.iter().map(|&value| value != 0).collect();

@@ -109,7 +109,7 @@ pub(super) struct CalibratedSensor {
 
 /// Scaramuzza's omnidirectional model.
 #[derive(Clone, Debug, Deserialize)]
-pub(super) struct OcamFields {
+pub(crate) struct OcamFields {
     /// Ascending powers of the radius.
     pub(super) poly: Vec<Number>,
     /// Column and row, pixels.

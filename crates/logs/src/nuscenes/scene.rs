@@ -3,7 +3,7 @@
 use occlabel_core::{Fault, Keyframe, Loss, Scene, SweepHeader};
 
 use super::NuScenesLog;
-use super::cameras::{SceneCamera, exposures, scene_cameras};
+use super::cameras::{SceneCamera, all_exposures, exposures, scene_cameras};
 use super::captures::Captures;
 use super::chains::report_chains;
 use super::copies::without_copies;
@@ -31,6 +31,7 @@ pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, 
     check_labels(log, &headers)?;
     let cameras = scene_cameras(log, captures.cameras, &mut notes)?;
     let keyframes = keyframes(log, &moments, &headers, &cameras, &mut notes)?;
+    let exposures = all_exposures(log, &cameras);
     let tracks = scene_tracks(log, rows, &keys, &mut notes)?;
     let (warnings, refused) = notes.finish();
     Ok(Scene {
@@ -39,6 +40,7 @@ pub(super) fn build_scene(log: &NuScenesLog, rows: &SceneRows) -> Result<Scene, 
         tracks,
         cameras: cameras.into_iter().map(|camera| camera.named).collect(),
         keyframes,
+        exposures,
         warnings,
         refused,
     })

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use occlabel_core::{Fault, Loss, Pose, SweepHeader};
+use occlabel_core::{Fault, Loss, PointsOf, Pose, SweepHeader};
 
 use super::NuScenesLog;
 use super::captures::Capture;
@@ -63,5 +63,6 @@ fn header(
         world_from_ego,
         ego_from_lidar,
         labelled: log.tables.labels.contains_key(&sweep.row.token),
+        points_of: PointsOf::Moment,
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use occlabel_core::{Fault, Loss, Scene, SweepHeader};
+use occlabel_core::{Fault, Loss, PointsOf, Scene, SweepHeader};
 use occlabel_disk as disk;
 
 use super::LIDAR;
@@ -58,6 +58,7 @@ fn sweep_header(
         world_from_ego: tables.world_from_ego(scan)?,
         ego_from_lidar: tables.ego_from_lidar,
         labelled: false,
+        points_of: PointsOf::Moment,
     };
     header.labelled = label_file(&header).is_some_and(|file| disk::is_file(&root.join(file)));
     Ok(header)

@@ -57,6 +57,19 @@ pub(super) fn expose(
     }
 }
 
+/// Of each camera what it saw in the frames, in order of time.
+pub(super) fn all_exposures(frames: &[Frame], cameras: &[SceneCamera]) -> Vec<Vec<Exposure>> {
+    let of_camera = |(index, camera): (usize, &SceneCamera)| {
+        // What is odd about them is told of keyframes, which need them.
+        let mut unheard = Notes::default();
+        let exposure = |frame| exposure(camera, index, frame, &mut unheard);
+        let mut exposures: Vec<Exposure> = frames.iter().filter_map(exposure).collect();
+        exposures.sort_by_key(|exposure| exposure.time);
+        exposures
+    };
+    cameras.iter().enumerate().map(of_camera).collect()
+}
+
 /// What a camera saw in a frame. What is absent is noted, what is unusable is refused.
 fn exposure(
     camera: &SceneCamera,

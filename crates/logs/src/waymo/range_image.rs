@@ -196,7 +196,7 @@ impl<'a> Motion<'a> {
 
 #[cfg(test)]
 mod tests {
-    use occlabel_core::{ClassId, Timestamp};
+    use occlabel_core::{ClassId, PointsOf, Timestamp};
 
     use super::*;
 
@@ -209,6 +209,7 @@ mod tests {
             world_from_ego: Pose::identity(),
             ego_from_lidar: Pose::translation(0.0, 0.0, 2.0),
             labelled: true,
+            points_of: PointsOf::Moment,
         }
     }
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use occlabel_core::{Fault, Loss, Scene, SweepHeader, Timestamp};
+use occlabel_core::{Fault, Loss, PointsOf, Scene, SweepHeader, Timestamp};
 
-use super::cameras::{expose, scene_cameras};
+use super::cameras::{all_exposures, expose, scene_cameras};
 use super::segment::{Frame, LidarCalibration, Segment};
 use super::sweep_id::SweepId;
 use super::tracks::scene_tracks;
@@ -38,10 +38,12 @@ pub(super) fn build_scene(
     let is_annotated = |sweep: &SweepHeader| annotated.contains(&sweep.time);
     let mut keyframes = keyframes(&options.keyframes, name, &sweeps, is_annotated, &[], &notes)?;
     expose(&mut keyframes, &frames, &cameras, &mut notes);
+    let exposures = all_exposures(&frames, &cameras);
     let tracks = scene_tracks(options, &frames, &mut notes)?;
     let cameras = cameras.into_iter().map(|camera| camera.named).collect();
     let (warnings, refused) = notes.finish();
-    Ok(Scene { name: name.to_owned(), sweeps, tracks, cameras, keyframes, warnings, refused })
+    let name = name.to_owned();
+    Ok(Scene { name, sweeps, tracks, cameras, keyframes, exposures, warnings, refused })
 }
 
 /// The frames that can be used, one at a time.
@@ -84,6 +86,7 @@ fn sweep_headers(
                 world_from_ego: frame.world_from_ego,
                 ego_from_lidar: calibration.ego_from_lidar,
                 labelled,
+                points_of: PointsOf::Moment,
             });
         }
     }

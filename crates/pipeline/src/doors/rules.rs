@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use occlabel_annotate::GhostClasses;
 use occlabel_occlusion::{CameraRays, Occluders};
-use occlabel_raycast::{Conflict, ObjectRays, Outside};
+use occlabel_raycast::{Conflict, ObjectRays, Outside, RaySource};
 use occlabel_voxelize::Vote;
 
 use super::bytes::Bytes;
@@ -49,6 +49,8 @@ fn put_points(config: &mut Config, bytes: &mut Bytes) {
     aggregate.box_margin_m = bytes.of([0.1, 0.0, 10.0]);
     aggregate.window_s = bytes.of([1000.0, 0.0, 0.3]);
     aggregate.deformable_window_s = bytes.of([0.25, 0.0, 1000.0]);
+    aggregate.radius_m =
+        bytes.of([Limit::Lifted(NoLimit::None), Limit::AtMost(0.0), Limit::AtMost(10.0)]);
     let relabel = &mut config.relabel;
     relabel.k = bytes.of([5, 1, 2, 300]);
     relabel.max_distance_m =
@@ -61,6 +63,7 @@ fn put_points(config: &mut Config, bytes: &mut Bytes) {
 
 fn put_rays(config: &mut Config, bytes: &mut Bytes) {
     let rays = &mut config.raycast;
+    rays.source = bytes.of([RaySource::Lidar, RaySource::Camera]);
     rays.outside = bytes.of([Outside::Clip, Outside::Drop]);
     rays.ignore_near_hit_m = bytes.of([0.0, 0.5, 1e6]);
     rays.ignore_near_origin_m = bytes.of([0.0, 0.5, 1e6]);

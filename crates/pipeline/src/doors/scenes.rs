@@ -3,8 +3,8 @@
 use std::convert::Infallible;
 
 use occlabel_core::{
-    ClassId, Exposure, Keyframe, NamedCamera, OccupancyLabels, PointCloud, PointLabel, Scene,
-    SweepHeader, Timestamp,
+    ClassId, Exposure, Keyframe, NamedCamera, OccupancyLabels, PointCloud, PointLabel, PointsOf,
+    Scene, SweepHeader, Timestamp,
 };
 use occlabel_occlusion::Lenses;
 
@@ -96,6 +96,7 @@ fn any_sweep(bytes: &mut Bytes, number: usize) -> SweepHeader {
         world_from_ego: bytes.pose(),
         ego_from_lidar: bytes.pose(),
         labelled: bytes.flag(),
+        points_of: PointsOf::Moment,
     }
 }
 

@@ -43,7 +43,8 @@ fn section_3_a_track_that_comes_and_goes_stands_only_between_its_annotations() {
 #[track_caller]
 fn boxed_at(drive: &Drive, rules: &Rules, expected_s: &[f64]) {
     let aggregated = drive.aggregate(rules, |_| true);
-    let boxed_s: Vec<f64> = aggregated.objects.iter().map(|o| o.time.0 as f64 / 1e9).collect();
+    let boxed_s: Vec<f64> =
+        aggregated.objects.iter().map(|o| o.time.unwrap().0 as f64 / 1e9).collect();
     assert_eq!(boxed_s, expected_s);
     assert!(aggregated.dropped.ghost > 100, "{} ghosts", aggregated.dropped.ghost);
 }

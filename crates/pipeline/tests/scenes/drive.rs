@@ -6,7 +6,8 @@ use nalgebra::{Rotation3, Vector3};
 use occlabel_core::camera::{Camera, CameraModel, Intrinsics, Pinhole};
 use occlabel_core::{
     AggregatedScene, Box3, BoxTrack, ClassId, Exposure, Keyframe, Meaning, NamedCamera,
-    OccupancyLabels, PointCloud, PointLabel, Pose, Scene, SweepHeader, Timestamp, TrackId,
+    OccupancyLabels, PointCloud, PointLabel, PointsOf, Pose, Scene, SweepHeader, Timestamp,
+    TrackId,
 };
 use occlabel_pipeline::{LabelOptions, Lenses, Rules, aggregate_scene, label_keyframe};
 
@@ -98,6 +99,7 @@ pub(crate) fn header(seconds: f64, world_from_ego: Pose, ego_from_lidar: Pose) -
         world_from_ego,
         ego_from_lidar,
         labelled: true,
+        points_of: PointsOf::Moment,
     }
 }
 

@@ -20,6 +20,7 @@
 //!   them nobody looked.
 //! - **Rays** are those of [`TrueRays`], moved as labels.md section 8 moves them, with the true boxes.
 
+mod camera_ends;
 mod cut;
 mod dense;
 mod divide;
@@ -55,7 +56,8 @@ pub struct TruthSettings {
     pub window_s: f64,
     /// The same for rays that end on movers whose parts swing.
     pub deformable_window_s: f64,
-    /// What is farther from a camera is not in view, metres; `None` leaves sight out.
+    /// What is farther from a camera is not in view, metres; `None` leaves sight and the ends of pixels' rays
+    /// out.
     pub sight_depth_m: Option<f64>,
 }
 
@@ -89,6 +91,7 @@ pub fn keyframe_truth(
     swept::fill_swept(drive, at, voxels);
     if let Some(depth_max_m) = settings.sight_depth_m {
         sight::fill_sight(drive, &instant, at, depth_max_m, voxels);
+        camera_ends::fill_camera_ends(drive, &instant, at, depth_max_m, voxels);
     }
     let marks = marks::mark_rays(drive, rays, at, settings);
     for (flat, voxel) in voxels.iter_mut().enumerate() {

@@ -3,8 +3,11 @@
 //! Each writes what the drive's scene says, faults of its annotator included, and nothing that a
 //! real log would not hold. All files go through [`Output`]: a log that looks whole is whole.
 
+mod cloud;
+mod coda;
 mod exposures;
 mod files;
+mod masks;
 mod mcap;
 mod meshes;
 mod nuscenes;
@@ -16,7 +19,10 @@ mod waymo;
 mod wire;
 mod written;
 
+pub use cloud::write_cloud;
+pub use coda::write_coda;
 pub use files::Output;
+pub use masks::write_masks;
 pub use mcap::write_mcap;
 pub use meshes::{MeshNames, write_meshes};
 pub use nuscenes::write_nuscenes;

@@ -1,7 +1,7 @@
 //! The points of a sweep as every log format has them.
 
 use nalgebra::Point3;
-use occlabel_core::Timestamp;
+use occlabel_core::{Fault, Timestamp};
 
 use crate::{Drive, What};
 
@@ -22,6 +22,19 @@ pub(crate) struct LoggedPoint<'a> {
     pub(crate) label: &'a str,
     /// The mover it belongs to.
     pub(crate) mover: Option<usize>,
+}
+
+/// The sweeps of the lidar that keyframes refer to, by their numbers in the scene: there is one at least.
+///
+/// # Errors
+/// If the drive has no keyframe.
+pub(crate) fn reference_sweeps(drive: &Drive) -> Result<Vec<usize>, Fault> {
+    let scene = drive.scene();
+    let Some(keyframe) = scene.keyframes.first() else {
+        return Err(Fault::new("world", "keyframe_hz", "at least one keyframe", "none"));
+    };
+    let lidar = &scene.reference_sweep(keyframe).lidar;
+    Ok((0..scene.sweeps.len()).filter(|&sweep| scene.sweeps[sweep].lidar == *lidar).collect())
 }
 
 /// The points of a sweep of the scene, in the order of its rays.

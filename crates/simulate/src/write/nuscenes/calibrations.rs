@@ -56,7 +56,7 @@ fn mounting(scene: &str, channel: &str, ego_from_sensor: &Pose) -> Value {
 }
 
 /// The camera matrix, and the fields of models that nuScenes has not (labels.md section 2).
-fn add_optics(row: &mut Value, model: &CameraModel) {
+pub(in crate::write) fn add_optics(row: &mut Value, model: &CameraModel) {
     if let Some(lens) = model.intrinsics() {
         row["camera_intrinsic"] = json!(lens.matrix());
     }

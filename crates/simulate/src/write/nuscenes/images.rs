@@ -7,6 +7,7 @@ use occlabel_core::{Exposure, Fault, Timestamp};
 
 use crate::write::exposures::exposures;
 use crate::write::files::Output;
+use crate::write::masks::write_mask;
 use crate::write::png::png;
 use crate::write::written::Images;
 use crate::{ClassImage, Drive, render};
@@ -45,7 +46,7 @@ fn write_pictures(image: &ClassImage, file: &str, output: &Output) -> Result<(),
     let size = [image.width, image.height];
     let below = file.split_once('/').map_or(file, |(_, below)| below);
     output.write(file, &png(&image.rgb, size, ExtendedColorType::Rgb8))?;
-    output.write(&format!("masks/{below}"), &png(&image.classes, size, ExtendedColorType::L8))
+    write_mask(image, &format!("masks/{}", below.trim_end_matches(".png")), output)
 }
 
 /// By time: the token of the first keyframe that an exposure serves.

@@ -25,6 +25,7 @@ use super::files::Output;
 use super::raw_names::RawNames;
 use super::written::{Images, Written};
 
+pub(super) use calibrations::add_optics;
 use tables::Tables;
 
 pub(super) use scene::sample_token;

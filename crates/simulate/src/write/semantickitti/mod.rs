@@ -21,7 +21,7 @@ use crate::Drive;
 use crate::camera::body_from_optical;
 
 use super::files::Output;
-use super::points::{LoggedPoint, logged_points};
+use super::points::{LoggedPoint, logged_points, reference_sweeps};
 use super::written::Written;
 
 /// The entry that makes the log one.
@@ -60,15 +60,6 @@ pub fn write_semantickitti(
     let headers: Vec<_> = sweeps.iter().map(|&sweep| &drive.scene().sweeps[sweep]).collect();
     write_texts(&headers, output)?;
     Ok((written, SEQUENCES))
-}
-
-fn reference_sweeps(drive: &Drive) -> Result<Vec<usize>, Fault> {
-    let scene = drive.scene();
-    let Some(keyframe) = scene.keyframes.first() else {
-        return Err(Fault::new("world", "keyframe_hz", "at least one keyframe", "none"));
-    };
-    let lidar = &scene.reference_sweep(keyframe).lidar;
-    Ok((0..scene.sweeps.len()).filter(|&sweep| scene.sweeps[sweep].lidar == *lidar).collect())
 }
 
 /// Whether each mover leaves its first place during the drive.
