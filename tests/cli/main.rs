@@ -17,6 +17,7 @@ mod logging;
 mod memory;
 mod parts;
 mod plan;
+mod polarization;
 mod records;
 mod reports;
 mod resume;

@@ -17,6 +17,7 @@ mod compare;
 mod completions;
 mod console;
 mod convert;
+mod decoded_image;
 mod demo;
 mod describe;
 mod evaluate;
@@ -34,6 +35,7 @@ mod mask_reader;
 mod masks;
 mod merge_manifests;
 mod plan;
+mod polarization;
 mod presets;
 mod progress;
 mod quality;
@@ -132,6 +134,7 @@ fn dispatch(command: &Command, console: &Console) -> Result<Outcome, Stop> {
         Command::Convert(args) => convert::run(args, console),
         Command::Describe(args) => describe::run(args, console),
         Command::View(args) => view::run(args, console),
+        Command::Polarization(args) => polarization::run(args, console),
         Command::Report(args) => report::run(args, console),
         Command::MergeManifests(args) => merge_manifests::run(args, console),
         Command::Verify(args) => verify::run(args, console),

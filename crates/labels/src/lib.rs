@@ -33,6 +33,7 @@
 //! ```
 
 mod atomic;
+mod beside;
 mod differences;
 #[cfg(any(test, fuzzing))]
 pub mod doors;
@@ -57,6 +58,7 @@ mod tree;
 mod verify;
 
 pub use atomic::{create_dir, remove_file, write_file, write_pieces};
+pub use beside::Beside;
 pub use files::{FileRecord, hash_files};
 pub use inputs::{InputHashes, InputMark, InputRecord};
 pub use journal::{Journal, JournalEntry};

@@ -7,6 +7,7 @@ mod evaluate;
 mod label;
 mod log;
 mod picture;
+mod polarization;
 mod quality;
 mod report;
 mod simulate;
@@ -24,6 +25,7 @@ pub(crate) use evaluate::{EvaluateArgs, MaskArg, MetricArg};
 pub(crate) use label::{LabelArgs, OnError, PlanArgs, ProgressArg, ResumeArg, Shard, WorkArgs};
 pub(crate) use log::{ConfigArgs, Format, LogArgs, QuatOrder, TimeSourceArg};
 pub(crate) use picture::{AcrossArg, PictureArg, PictureArgs};
+pub(crate) use polarization::PolarizationArgs;
 pub(crate) use quality::QualityArgs;
 pub(crate) use report::ReportArgs;
 pub(crate) use simulate::{ImagesArg, SimulateArgs, WrittenFormat};
@@ -79,6 +81,8 @@ pub(crate) enum Command {
     Describe(DescribeArgs),
     /// Show labels: as a picture, for Foxglove and Rerun, as a mesh, or as a page.
     View(Box<ViewArgs>),
+    /// Put images of how light is polarized beside the labels, from four cameras behind polarizers.
+    Polarization(Box<PolarizationArgs>),
     /// Show a whole run on one page, what strays from the rest first.
     Report(ReportArgs),
     /// Make the manifests of a run in shards one, as an undivided run would have written it.

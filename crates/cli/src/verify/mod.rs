@@ -8,7 +8,7 @@ use std::path::Path;
 use occlabel_core::Fault;
 use occlabel_disk as disk;
 use occlabel_labels::{
-    FileRecord, LabelTree, Manifest, RunFiles, unlisted_files, verify_file, verify_manifest,
+    Beside, FileRecord, LabelTree, Manifest, RunFiles, unlisted_files, verify_file, verify_manifest,
 };
 use rayon::prelude::*;
 
@@ -19,6 +19,9 @@ use crate::threads::start_threads;
 use crate::urls::check_url;
 use crate::verify::reopened::reopened;
 use crate::verify::verdict::{Defect, Verdict};
+
+/// What makes a file beside the labels again.
+const MADE_BY_POLARIZATION: &str = "`polarization` with the same flags makes it again";
 
 pub(crate) fn run(args: &VerifyArgs, console: &Console) -> Result<Outcome, Stop> {
     start_threads(args.jobs);
@@ -44,8 +47,8 @@ fn load(folder: &Path) -> Result<Manifest, Stop> {
     manifest.ok_or_else(|| Stop::usage(absent()))
 }
 
-/// All that is wrong: the manifest's contradictions, then files in order of their paths, then what is
-/// not listed. What is whole is opened as well.
+/// All that is wrong: the manifest's contradictions, then files in order of their paths, then those beside
+/// the labels, then what is not listed. What is whole is opened as well.
 fn defects(tree: &LabelTree, manifest: &Manifest) -> Result<Vec<Defect>, Fault> {
     let of_tree = |fault| Defect { fault, keyframe: None };
     let mut defects: Vec<Defect> = verify_manifest(manifest).into_iter().map(of_tree).collect();
@@ -57,8 +60,12 @@ fn defects(tree: &LabelTree, manifest: &Manifest) -> Result<Vec<Defect>, Fault> 
     if defects.is_empty() {
         defects.extend(reopened(tree, manifest)?);
     }
-    let extra = unlisted_files(tree, manifest)?.into_iter();
-    defects.extend(extra.map(|path| of_tree(not_listed(&path))));
+    let beside = Beside::load(tree)?;
+    let faults = beside.files.par_iter().filter_map(|record| verify_file(tree, record).err());
+    defects.par_extend(faults.map(|fault| of_tree(fault.hint(MADE_BY_POLARIZATION))));
+    let (mut extra, known) = (unlisted_files(tree, manifest)?, beside.paths());
+    extra.retain(|path| !known.contains(path.as_str()));
+    defects.extend(extra.iter().map(|path| of_tree(not_listed(path))));
     Ok(defects)
 }
 

@@ -1,17 +1,12 @@
 //! The cameras of a log at a keyframe.
 
-use std::io::Cursor;
-
-use image::{ImageReader, Limits, RgbImage};
+use image::RgbImage;
 use occlabel_core::{Exposure, Fault, Keyframe, Pose};
 use occlabel_view::CameraView;
 
+use crate::decoded_image::decode_image;
 use crate::exit::Stop;
 use crate::logged_scene::LoggedScene;
-
-/// Images that say they are larger are refused before anything is taken for them.
-const MOST_SIDE_PX: u32 = 16_384;
-const MOST_IMAGE_BYTES: u64 = 1 << 30;
 
 /// A camera, where it stood in the keyframe's grid, and what it saw.
 pub(crate) struct Shot<'a> {
@@ -70,23 +65,7 @@ fn rank(grid_from_camera: &Pose) -> (bool, f64) {
 fn read(log: &LoggedScene, exposure: &Exposure) -> Result<Option<RgbImage>, Stop> {
     let Some(bytes) = log.source.read_image(&log.scene, exposure)? else { return Ok(None) };
     let place = exposure.image.as_deref().unwrap_or(&log.scene.name);
-    Ok(Some(decode(&bytes, place)?))
-}
-
-/// A JPEG's or PNG's picture.
-fn decode(bytes: &[u8], place: &str) -> Result<RgbImage, Fault> {
-    let fault = |error: String| {
-        let expected = format!("a JPEG or PNG of at most {MOST_SIDE_PX} x {MOST_SIDE_PX} pixels");
-        Fault::new("image", place, expected, error)
-    };
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MOST_SIDE_PX);
-    limits.max_image_height = Some(MOST_SIDE_PX);
-    limits.max_alloc = Some(MOST_IMAGE_BYTES);
-    let mut reader = ImageReader::new(Cursor::new(bytes));
-    reader.limits(limits);
-    let reader = reader.with_guessed_format().map_err(|error| fault(error.to_string()))?;
-    Ok(reader.decode().map_err(|error| fault(error.to_string()))?.into_rgb8())
+    Ok(Some(decode_image(&bytes, place)?.into_rgb8()))
 }
 
 fn no_camera(log: &LoggedScene, keyframe: &Keyframe, camera: Option<&str>) -> Fault {
