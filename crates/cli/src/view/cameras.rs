@@ -79,35 +79,3 @@ fn no_camera(log: &LoggedScene, keyframe: &Keyframe, camera: Option<&str>) -> Fa
         _ => Fault::new("camera", place, "a camera", "none at this keyframe"),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_image_that_says_it_is_absurdly_large_is_refused() {
-        let mut bytes = occlabel_view::png(&RgbImage::new(2, 2));
-        bytes[16..20].copy_from_slice(&2_000_000_000_u32.to_be_bytes());
-        let crc = crc_of(&bytes[12..29]);
-        bytes[29..33].copy_from_slice(&crc.to_be_bytes());
-        let fault = decode(&bytes, "a.png").unwrap_err();
-        assert!(fault.to_string().starts_with("a.png: expected a JPEG or PNG of at most 16384"));
-        assert!(decode(&[0xff, 0xd8, 0xff], "b.jpg").is_err() && decode(b"", "c.jpg").is_err());
-    }
-
-    /// That of PNG, bit by bit.
-    fn crc_of(bytes: &[u8]) -> u32 {
-        let step = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
-        !bytes.iter().fold(!0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
-    }
-
-    #[test]
-    fn a_jpeg_is_read() {
-        let mut bytes = Cursor::new(Vec::new());
-        let red = RgbImage::from_pixel(16, 8, image::Rgb([200, 20, 10]));
-        red.write_to(&mut bytes, image::ImageFormat::Jpeg).unwrap();
-        let back = decode(bytes.get_ref(), "a.jpg").unwrap();
-        assert_eq!(back.dimensions(), (16, 8));
-        assert!(back.pixels().all(|p| p.0[0] > 190 && p.0[1] < 35 && p.0[2] < 25));
-    }
-}
