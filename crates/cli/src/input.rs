@@ -84,7 +84,7 @@ pub(crate) fn open_by(log: &LogArgs, mut config: Config, stead: &Stead) -> Resul
     let options = ReadOptions { scenes, unknown_as, taxonomy, keyframes: config.keyframes.clone() };
     let source = open_format(log, options, &config).map_err(stop)?;
     let preset = None;
-    Ok(Opened { source, preset, config, taxonomy_hash, rules, masks, meshes, names_lidar })
+    Ok(Opened { source, preset, config, taxonomy_hash, rules, masks, names_lidar, meshes })
 }
 
 /// Opens a log by its format.

@@ -167,10 +167,10 @@ impl Bench<'_> {
             return Vec::new();
         };
         let same_time_s = self.rules.rays().settings.same_time_s;
-        let now = seen.iter().filter(|seen| {
+        let is_now = |seen: &&&ObjectSweep| {
             seen.time.is_some_and(|time| time.seconds_apart(keyframe.time) <= same_time_s)
-        });
-        now.map(|seen| placed(seen, &boxed.world_from_box)).collect()
+        };
+        seen.iter().filter(is_now).map(|seen| placed(seen, &boxed.world_from_box)).collect()
     }
 }
 

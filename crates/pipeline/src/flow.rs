@@ -20,7 +20,8 @@ struct Motion {
 /// Velocity of each voxel's centre with its track, grid frame, metres per second.
 ///
 /// 0 where nothing is, or nothing that a track vouches for; NaN where the track's next annotation is
-/// missing or farther away than `max_gap_s`, or its body has no neighbour in time. Both boxes stand in the keyframe's own grid, so the
+/// missing or farther away than `max_gap_s`, of instances that have no box, and where a body has no
+/// neighbour in time. Both boxes stand in the keyframe's own grid, so the
 /// ego's motion is not in it.
 pub(crate) fn flow(
     scene: &Scene,

@@ -20,7 +20,7 @@ const BY_CAMERA: [&str; 4] = [
 /// 9 x 7 x 1 voxels of a metre, the camera in the middle of the lower edge, which looks up in drawings.
 fn flat_rules(more: &[&str]) -> Rules {
     let grid = ["grid.min_m=[-0.5, -3.5, -0.5]", "grid.max_m=[8.5, 3.5, 0.5]"];
-    rules(&[&BY_CAMERA, &grid, more].concat())
+    rules(&[&BY_CAMERA[..], &grid, more].concat())
 }
 
 fn points(places: &[[f64; 2]]) -> PointCloud<PointLabel> {

@@ -30,8 +30,9 @@ pub(crate) fn run_record(job: &Job, plan: &Plan) -> Result<RunRecord, Fault> {
         scene.files.iter().map(record)
     });
     let masks = plan.scenes.iter().flat_map(|scene| scene.masks.iter().cloned().map(Ok));
-    let beside = masks.chain(mesh_records(job, plan));
-    let inputs = tables.chain(sweeps).chain(beside).collect::<Result<Vec<_>, Fault>>()?;
+    let meshes = mesh_records(job, plan);
+    let inputs = tables.chain(sweeps).chain(masks).chain(meshes);
+    let inputs = inputs.collect::<Result<Vec<_>, Fault>>()?;
     Ok(RunRecord::new(config_json(&job.opened.config), inputs))
 }
 

@@ -58,7 +58,7 @@ fn nothing_judged_is_null_throughout() {
     let json = serde_json::to_value(&quality).unwrap();
     let figures = json["all"].as_object().unwrap();
     assert!(figures.values().all(|figure| figure["value"].is_null() && figure["count"] == 0));
-    assert_eq!(figures.len(), 29);
+    assert_eq!(figures.len(), 30);
     assert!(!quality.table().contains("NaN"));
 }
 

@@ -187,9 +187,9 @@ mod tests {
     #[test]
     fn a_normal_stands_in_for_a_rotation() {
         let mut row = surfel(0.9, [1.0; 2]);
-        [Column::Rot0, Column::Rot1, Column::Rot2, Column::Rot3]
-            .map(|part| row.set(part, f64::NAN));
-        [Column::NormalX, Column::NormalY].map(|part| row.set(part, 0.0));
+        let turn = [Column::Rot0, Column::Rot1, Column::Rot2, Column::Rot3];
+        turn.into_iter().for_each(|part| row.set(part, f64::NAN));
+        [Column::NormalX, Column::NormalY].into_iter().for_each(|part| row.set(part, 0.0));
         row.set(Column::NormalZ, -2.0);
         assert!(ellipse(&row).points().all(|p| (p.z - 3.0).abs() < 1e-12));
     }
@@ -198,7 +198,7 @@ mod tests {
     fn a_settings_word_tells_how_numbers_are_written() {
         let mut row = surfel(0.5, [1.0; 2]);
         row.set(Column::Opacity, 0.9);
-        [Column::Scale0, Column::Scale1].map(|scale| row.set(scale, 0.2));
+        [Column::Scale0, Column::Scale1].into_iter().for_each(|scale| row.set(scale, 0.2));
         let settings = CloudSettings {
             opacity: OpacityScale::Linear,
             scale: SizeScale::Metres,
