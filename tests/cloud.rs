@@ -148,7 +148,8 @@ fn a_vision_only_cloud_gives_the_true_occupancy_within_the_cameras_view() {
 fn the_clouds_own_classes_are_kept_and_surfels_need_not_be_spread() {
     let cloud = Reconstructed::new();
     let tree = cloud.place("labels");
-    let set = ["--set", "taxonomy.file=occ3d-nuscenes", "--set", "voxelize.surfels=points", "--evidence"];
+    let set =
+        ["--set", "taxonomy.file=occ3d-nuscenes", "--set", "voxelize.surfels=points", "--evidence"];
     cloud.label(&tree, &set).exits(0);
     let arrays = read_arrays(&tree, "drive", "1000000000");
     for class in [4, 11, 15, 16] {

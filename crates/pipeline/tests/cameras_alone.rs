@@ -20,7 +20,7 @@ const BY_CAMERA: [&str; 4] = [
 /// 9 x 7 x 1 voxels of a metre, the camera in the middle of the lower edge, which looks up in drawings.
 fn flat_rules(more: &[&str]) -> Rules {
     let grid = ["grid.min_m=[-0.5, -3.5, -0.5]", "grid.max_m=[8.5, 3.5, 0.5]"];
-    rules(&[&BY_CAMERA, &grid, more].concat())
+    rules(&[&BY_CAMERA[..], &grid, more].concat())
 }
 
 fn points(places: &[[f64; 2]]) -> PointCloud<PointLabel> {
@@ -104,7 +104,7 @@ fn section_6_a_track_of_no_time_stands_where_its_box_stands() {
 #[test]
 fn section_6_points_beyond_the_radius_do_not_serve() {
     let labels = |radius: &str| {
-        drive(&[[4.0, 0.0], [8.0, 1.0]])
+        drive(&[[4.0, -2.0], [8.0, 1.0]])
             .label(&flat_rules(&[&format!("aggregate.radius_m={radius}")]))
     };
     let is_there = |radius| class_at(&labels(radius), [8, 4, 0]) == '#';
