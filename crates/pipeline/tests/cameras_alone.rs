@@ -104,7 +104,7 @@ fn section_6_a_track_of_no_time_stands_where_its_box_stands() {
 #[test]
 fn section_6_points_beyond_the_radius_do_not_serve() {
     let labels = |radius: &str| {
-        drive(&[[4.0, 0.0], [8.0, 1.0]])
+        drive(&[[4.0, -2.0], [8.0, 1.0]])
             .label(&flat_rules(&[&format!("aggregate.radius_m={radius}")]))
     };
     let is_there = |radius| class_at(&labels(radius), [8, 4, 0]) == '#';
