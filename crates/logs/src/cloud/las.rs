@@ -19,6 +19,8 @@ pub(super) struct Las {
     record_bytes: usize,
     scale: [f64; 3],
     offset: [f64; 3],
+    /// What stands before the first point.
+    head: Vec<u8>,
 }
 
 impl Las {
@@ -50,7 +52,7 @@ impl Las {
             Some(long) => u64::from_le_bytes(*long),
             None => points,
         };
-        Ok(Self { points, format, record_bytes, scale, offset })
+        Ok(Self { points, format, record_bytes, scale, offset, head })
     }
 
     /// How many points the header declares.
@@ -81,7 +83,7 @@ impl Las {
         mut visit: impl FnMut(&Row),
     ) -> Result<(), String> {
         if self.is_packed() {
-            return Err("packed points (LAZ), which `laszip` and PDAL make LAS of".into());
+            return self.unpack(reader, visit);
         }
         let mut record = vec![0; self.record_bytes];
         for number in 0..self.points {
@@ -91,6 +93,20 @@ impl Las {
             visit(&self.row(&record));
         }
         Ok(())
+    }
+
+    #[cfg(feature = "laz")]
+    fn unpack(&self, reader: &mut impl Read, mut visit: impl FnMut(&Row)) -> Result<(), String> {
+        let mut packed = Vec::new();
+        reader.read_to_end(&mut packed).map_err(|error| error.to_string())?;
+        let size = [self.points, self.record_bytes as u64];
+        super::laz::unpack(&self.head, packed, size, |record| visit(&self.row(record)))
+    }
+
+    #[cfg(not(feature = "laz"))]
+    fn unpack(&self, _: &mut impl Read, _: impl FnMut(&Row)) -> Result<(), String> {
+        let found = "packed points (LAZ), which a program with the cargo feature `laz` reads";
+        Err(format!("{found}, and `laszip` makes LAS of ({} bytes before them)", self.head.len()))
     }
 
     fn row(&self, record: &[u8]) -> Row {
@@ -174,7 +190,7 @@ mod tests {
     fn cut_packed_and_hostile_files_are_refused() {
         let sound = sample(6);
         assert!((0..sound.len()).all(|end| read(&sound[..end]).is_err()));
-        assert!(read(&sample(0x80 | 6)).unwrap_err().contains("LAZ"));
+        assert!(read(&sample(0x80 | 6)).unwrap_err().contains("LAS"));
         let mut short = sound.clone();
         short[105] = 4;
         assert!(read(&short).unwrap_err().contains("4 bytes"));

@@ -14,6 +14,8 @@ pub(crate) mod doors;
 mod folders;
 mod json;
 mod las;
+#[cfg(feature = "laz")]
+mod laz;
 mod lzf;
 mod pcd;
 mod ply;
