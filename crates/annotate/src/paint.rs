@@ -218,12 +218,12 @@ mod tests {
             size_m: Vector3::repeat(1.0),
         };
         let cloud = PointCloud::from_one_origin(Point3::origin(), vec![at(1, 2, 4.0)], vec![CAR]);
-        let (track, time) = (TrackId(3), Timestamp(0));
+        let (track, time) = (TrackId(3), Some(Timestamp(0)));
         let object = ObjectSweep { track, time, boxed: boxed(0.0), cloud };
         let points = [(at(1, 2, 8.0), None), (at(6, 2, 8.0), None)];
         let (camera, mask) = (camera(), halves());
         let seen = view(&camera, &mask, 0.0);
-        assert_eq!(painted(&points, &[&object], &[seen.clone()]), [None, Some(CAR)]);
+        assert_eq!(painted(&points, &[&object], std::slice::from_ref(&seen)), [None, Some(CAR)]);
         // By the exposure's time it has moved 5 m, which is 5 pixels at its distance.
         let world_from_box = [(track, boxed(5.0).world_from_box)].into();
         let moved = View { world_from_box, ..seen };

@@ -419,7 +419,7 @@ fn section_8_sweeps_of_both_times_forget_only_the_other() {
 fn section_8_world_parts_of_another_time_are_forgotten_and_object_parts_never() {
     let crossings = |now, others, after| {
         let mut car = car(now);
-        car.object.time = Timestamp(NOW + after);
+        car.object.time = Some(Timestamp(NOW + after));
         let mut instant = car.alone();
         instant.standing.extend(others);
         cast(&instant, &row(10, 1.0), &PLAIN).crossings.into_values()
