@@ -20,6 +20,8 @@ pub(crate) struct MaskReader<'a> {
     masks: &'a Masks,
     scene: &'a Scene,
     of_scene: SceneMasks,
+    /// How many numbers tracks, and bodies known by their meshes, have: instances come after them.
+    numbered: usize,
     /// Whether a mask that cannot be read is left out.
     skips: bool,
     /// Whether the scene will not be labelled any more.
@@ -36,8 +38,14 @@ impl<'a> MaskReader<'a> {
     pub(crate) fn new(masks: Option<&'a Masks>, scene: &'a Scene) -> Result<Option<Self>, Fault> {
         let Some(masks) = masks else { return Ok(None) };
         let of_scene = masks.of_scene(scene)?;
+        let (numbered, skips, interrupt) = (scene.tracks.len(), false, None);
         let (kept, lost) = Default::default();
-        Ok(Some(Self { masks, scene, of_scene, skips: false, interrupt: None, kept, lost }))
+        Ok(Some(Self { masks, scene, of_scene, numbered, skips, interrupt, kept, lost }))
+    }
+
+    /// The same for a scene in which so many numbers are taken.
+    pub(crate) fn after(self, numbered: usize) -> Self {
+        Self { numbered, ..self }
     }
 
     /// The same for a run that may leave out masks that cannot be read, and may be interrupted.
@@ -60,8 +68,8 @@ impl<'a> MaskReader<'a> {
             return Ok(Some(mask));
         }
         let Some(file) = self.of_scene.mask_of(exposure) else { return Ok(None) };
-        let (camera, tracks) = (&self.scene.cameras[exposure.camera], self.scene.tracks.len());
-        match self.masks.read(file, &camera.camera, tracks) {
+        let camera = &self.scene.cameras[exposure.camera];
+        match self.masks.read(file, &camera.camera, self.numbered) {
             Ok(mask) => Ok(Some(self.keep(key, mask))),
             Err(fault) if self.skips => {
                 self.lost.lock().expect("no reader panicked").insert(key, fault);

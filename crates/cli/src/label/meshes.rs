@@ -62,6 +62,12 @@ impl PlannedMeshes {
         self.files.iter().map(|file| &file.path)
     }
 
+    /// How many numbers the tracks of the scene and the bodies after them have.
+    pub(crate) fn numbered(&self, scene: &Scene) -> usize {
+        let highest = self.tracks.values().map(|id| usize::from(id.0)).max();
+        highest.unwrap_or_default().max(scene.tracks.len())
+    }
+
     /// Bodies that are numbered after the scene's tracks, as the manifest lists them.
     pub(crate) fn own_tracks(
         &self,

@@ -185,7 +185,8 @@ impl SceneRun<'_> {
         let (mut clock, rules) = (meter.clock(), &self.job.opened.rules);
         let reader = SweepReader::new(self.job, self.interrupt);
         let masks = MaskReader::new(self.job.opened.masks.as_ref(), scene)?;
-        let masks = masks.map(|masks| masks.of_run(self.job.skips(), self.interrupt));
+        let (numbered, skips) = (self.planned.meshes.numbered(scene), self.job.skips());
+        let masks = masks.map(|masks| masks.after(numbered).of_run(skips, self.interrupt));
         let masked = masks.as_ref().map_or_else(MaskedExposures::none, MaskReader::exposures);
         let (read, enter) = (|sweep: &_| reader.read(sweep), |stage| clock.enter(stage));
         let aggregated = aggregate_painted_scene(scene, rules, read, &masked, enter)?;
