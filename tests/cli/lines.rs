@@ -75,7 +75,7 @@ fn every_preset_is_listed_and_can_be_fed_back() {
         assert!(names.contains(&name), "{name}");
     }
     let log = TestLog::nano();
-    let presets: Vec<_> = names.iter().filter(|name| !name.starts_with("taxonomies/")).collect();
+    let presets: Vec<_> = names.iter().filter(|name| !name.contains('/')).collect();
     for name in &presets {
         let file = log.beside(&format!("{name}.toml"));
         fs::write(&file, occlabel(&["presets", name]).exits(0).stdout).expect("written");
@@ -89,6 +89,9 @@ fn every_preset_is_listed_and_can_be_fed_back() {
     assert!(presets.len() >= 6);
     for name in names.iter().filter(|name| name.starts_with("taxonomies/")) {
         assert!(occlabel(&["presets", name]).exits(0).stdout.contains("priority"), "{name}");
+    }
+    for name in names.iter().filter(|name| name.starts_with("masks/")) {
+        assert!(occlabel(&["presets", name]).exits(0).stdout.contains(" = \"road\""), "{name}");
     }
     occlabel(&["presets", "best"]).exits(2).tells(&["best", "precise"]);
 }

@@ -3,7 +3,8 @@
 //! Found by annealing: as near to the standard ones as can be, those of the most common classes
 //! nearest, while all pairs of a taxonomy keep their distance.
 
-pub(super) const COLOR_BLIND: [(&str, [u8; 3]); 48] = [
+pub(super) const COLOR_BLIND: [(&str, [u8; 3]); 49] = [
+    ("occupied", [152, 147, 182]),
     ("others", [152, 147, 182]),
     ("other", [152, 147, 182]),
     ("background", [154, 123, 80]),

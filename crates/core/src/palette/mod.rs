@@ -193,9 +193,9 @@ mod tests {
         let nearest = |(_, classes): (String, Vec<String>)| {
             let palette = Palette::of(&classes);
             let d = |(a, b)| sight::apart(palette.color(a as u8), palette.color(b as u8));
-            pairs(classes.len()).map(d).min().unwrap()
+            pairs(classes.len()).map(d).min()
         };
-        assert!(shipped().into_iter().map(nearest).min().unwrap() < 10);
+        assert!(shipped().into_iter().filter_map(nearest).min().unwrap() < 10);
     }
 
     fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {

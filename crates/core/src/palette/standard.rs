@@ -2,7 +2,8 @@
 
 /// Not the benchmarks' own: `others`, black there, on which no shade would show; and Cityscapes' greys
 /// and near-black blues.
-pub(super) const STANDARD: [(&str, [u8; 3]); 49] = [
+pub(super) const STANDARD: [(&str, [u8; 3]); 50] = [
+    ("occupied", [172, 160, 132]),
     ("others", [172, 160, 132]),
     ("other", [172, 172, 120]),
     ("background", [172, 172, 120]),

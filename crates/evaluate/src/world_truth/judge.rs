@@ -4,7 +4,7 @@ use occlabel_core::{ClassId, Fault, VoxelGrid, VoxelTruth};
 use occlabel_occlusion::{Eye, OcclusionSettings};
 use rayon::prelude::*;
 
-use super::camera::exact_camera_mask;
+use super::camera::{ExactView, exact_view};
 use super::door::check;
 use super::objects::objects;
 use super::people::{is_of_people, speed_errors};
@@ -53,7 +53,7 @@ pub fn judge(labels: &JudgedLabels, known: &KnownWorld, scale: &Scale) -> Result
     let bench = Bench {
         labels,
         truth: known.truth.values(),
-        camera: exact_camera_mask(known, scale),
+        camera: exact_view(known, scale),
         has_sight: !known.eyes.is_empty() && known.truth.values().iter().any(|t| t.sight != 0),
         has_ends: known.truth.values().iter().any(|truth| truth.camera_ends > 0),
         scale,
@@ -69,7 +69,7 @@ pub fn judge(labels: &JudgedLabels, known: &KnownWorld, scale: &Scale) -> Result
 struct Bench<'a> {
     labels: &'a JudgedLabels<'a>,
     truth: &'a [VoxelTruth],
-    camera: Option<Vec<bool>>,
+    camera: Option<ExactView>,
     has_sight: bool,
     has_ends: bool,
     scale: &'a Scale,
@@ -170,7 +170,7 @@ impl Bench<'_> {
         let is_visible = pair.truth.ends > 0 || pair.truth.crossed;
         ring.overlap(Question::MaskLidar, pair.is_observed, is_visible);
         if let Some(camera) = &self.camera {
-            let is_seen = camera[flat] && pair.is_observed;
+            let is_seen = camera.by_pixels[flat] && pair.is_observed;
             ring.overlap(Question::MaskCamera, pair.is_camera_seen, is_seen);
         }
         if self.has_sight {
@@ -183,7 +183,7 @@ impl Bench<'_> {
     fn in_view(&self, flat: usize, pair: &Pair, ring: &mut Ring) {
         let Some(camera) = self.camera.as_ref().filter(|_| self.has_ends) else { return };
         let is_asked = pair.truth.solid > 0.0 && pair.truth.camera_ends >= OBSERVABLE_ENDS;
-        if is_asked || (camera[flat] && pair.label.is_some()) {
+        if camera.by_rule[flat] && (is_asked || pair.label.is_some()) {
             ring.count(Question::OccupiedCamera, None, pair.is_true_positive());
         }
     }
