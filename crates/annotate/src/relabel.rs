@@ -116,11 +116,10 @@ fn relabel_sweep(
     settings: &RelabelSettings,
 ) -> (BackgroundSweep<ClassId>, DropCounts, ClassCounts) {
     let (mut drops, mut classes) = (DropCounts::default(), ClassCounts::default());
-    let brush = |i: usize| sweep.brushes.get(i).copied().unwrap_or_default();
+    let is_painted = !sweep.brushes.is_empty();
     let mut brushes = Vec::with_capacity(sweep.brushes.len());
     let cloud = sweep.cloud.filter_map(|i, label| {
-        let told = if brush(i).is_painted() { &mut classes.masks } else { &mut classes.labels };
-        let chosen = (label.map(|class| (class, told)))
+        let chosen = (label.map(|class| (class, &mut classes.labels)))
             .or_else(|| Some((verdicts[i].class()?, &mut classes.neighbours)))
             .or_else(|| Some((settings.unknown?, &mut classes.unknown)));
         let Some((class, from)) = chosen else {
@@ -132,9 +131,13 @@ fn relabel_sweep(
             return None;
         }
         *from += 1;
-        brushes.extend(sweep.brushes.get(i));
+        if is_painted {
+            brushes.push(sweep.brushes[i]);
+        }
         Some(class)
     });
+    classes.masks = brushes.iter().filter(|brush| brush.is_painted()).count() as u64;
+    classes.labels -= classes.masks;
     (BackgroundSweep { brushes, ..BackgroundSweep::new(sweep.time, cloud) }, drops, classes)
 }
 

@@ -104,11 +104,10 @@ pub fn label_keyframe(
     let eyes = open_eyes(scene, keyframe, &moment.grid_from_world);
     let camera_bits =
         visible(&eyes, lenses, spec, &matter(&states, &occupied, ground), &rules.occlusion);
-    let states = match source {
-        RaySource::Lidar => states,
-        RaySource::Camera => seen(&states, &camera_bits),
+    let (states, occupied) = match source {
+        RaySource::Lidar => (states, occupied),
+        RaySource::Camera => only_seen(&states, occupied, &camera_bits),
     };
-    let occupied = occupied_votes(occupied, &states);
 
     enter(Stage::Finish);
     let mut labels = arrays(rules.taxonomy.free, states, &occupied, &camera_bits);
@@ -144,6 +143,17 @@ pub(crate) fn open_eyes<'a>(
         grid_from_camera: grid_from_world * exposure.world_from_camera,
     };
     keyframe.exposures.iter().map(eye).collect()
+}
+
+/// States and votes of what cameras see, which are all that is known.
+fn only_seen(
+    states: &VoxelGrid<VoxelState>,
+    occupied: VoxelGrid<Option<VoxelVote>>,
+    camera_bits: &VoxelGrid<u16>,
+) -> (VoxelGrid<VoxelState>, VoxelGrid<Option<VoxelVote>>) {
+    let states = seen(states, camera_bits);
+    let occupied = occupied_votes(occupied, &states);
+    (states, occupied)
 }
 
 /// The votes of occupied voxels alone.
