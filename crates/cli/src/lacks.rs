@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 use occlabel_core::{Fault, Scene};
-use occlabel_pipeline::{Config, PaintTable};
+use occlabel_pipeline::{Config, PaintTable, RaySource};
 
 /// A word about each kind of record that a scene goes without: none of them keeps it from being
 /// labelled.
 pub(crate) fn lacks(scene: &Scene, config: &Config) -> Vec<Fault> {
-    let lacks = [no_labels(scene, config), few_boxes(scene, config), no_exposures(scene)];
+    let lacks = [no_labels(scene, config), few_boxes(scene, config), few_exposures(scene, config)];
     lacks.into_iter().flatten().collect()
 }
 
@@ -42,8 +42,15 @@ fn few_boxes(scene: &Scene, config: &Config) -> Option<Fault> {
     }
 }
 
-fn no_exposures(scene: &Scene) -> Option<Fault> {
-    let saw_nothing = scene.keyframes.iter().all(|keyframe| keyframe.exposures.is_empty());
-    let found = "none at any keyframe: mask_camera is all 0";
-    saw_nothing.then(|| Fault::new("no-cameras", "cameras", "exposures of cameras", found))
+fn few_exposures(scene: &Scene, config: &Config) -> Option<Fault> {
+    let blind = scene.keyframes.iter().filter(|keyframe| keyframe.exposures.is_empty()).count();
+    let all = scene.keyframes.len();
+    let found = match config.raycast.source {
+        _ if blind == all => "none at any keyframe: mask_camera is all 0".to_owned(),
+        RaySource::Camera if blind > 0 => {
+            format!("none at {blind} of {all} keyframes, of which nothing is observed")
+        }
+        RaySource::Camera | RaySource::Lidar => return None,
+    };
+    Some(Fault::new("no-cameras", "cameras", "exposures of cameras", found))
 }

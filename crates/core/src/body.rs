@@ -54,11 +54,27 @@ pub struct BodyMotion {
     pub seconds: f64,
 }
 
+/// What is larger is no body, but a broken vertex or another unit, metres.
+const LARGEST_M: f64 = 20.0;
+
+/// From corner to corner of the box around points, metres.
+fn across_m(points: &[Point3<f64>]) -> f64 {
+    let reach = |axis: usize| {
+        let along = points.iter().map(|point| point[axis]);
+        let ends = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+            [low.min(at), high.max(at)]
+        });
+        ends[1] - ends[0]
+    };
+    (reach(0) * reach(0) + reach(1) * reach(1) + reach(2) * reach(2)).sqrt()
+}
+
 impl TriangleMesh {
     /// A surface of vertices, metres, and of triangles between them.
     ///
     /// # Errors
-    /// If there is no triangle, a triangle names no vertex, or a coordinate is no finite number.
+    /// If there is no triangle, a triangle names no vertex, a coordinate is no finite number, or the
+    /// surface is larger than any body.
     pub fn new(
         vertices: Vec<Point3<f64>>,
         faces: impl Into<Arc<[[u32; 3]]>>,
@@ -75,9 +91,15 @@ impl TriangleMesh {
                 format!("vertex {stray}"),
             ));
         }
-        match vertices.iter().position(|vertex| !is_finite(vertex)) {
-            None => Ok(Self { vertices, faces }),
-            Some(at) => Err(fault("finite coordinates", format!("vertex {at}: {}", vertices[at]))),
+        if let Some(at) = vertices.iter().position(|vertex| !is_finite(vertex)) {
+            return Err(fault("finite coordinates", format!("vertex {at}: {}", vertices[at])));
+        }
+        match across_m(&vertices) {
+            across_m if across_m <= LARGEST_M => Ok(Self { vertices, faces }),
+            across_m => Err(fault(
+                &format!("a body of at most {LARGEST_M} m across"),
+                format!("{across_m:.3e} m"),
+            )),
         }
     }
 

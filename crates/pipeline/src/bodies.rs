@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use nalgebra::Point3;
 use occlabel_annotate::{BoxSource, box_at};
 use occlabel_core::{
     AggregatedScene, Body, BodyMotion, BoxTrack, ClassId, Fault, Keyframe, LoggedMesh, ObjectSweep,
@@ -131,6 +132,8 @@ impl Bench<'_> {
         let views = self.views(keyframe, track);
         let points = views.iter().map(|view| view.points.len()).sum();
         let (fit, mesh) = self.aligned(mesh, &views, points);
+        let astray_m = self.astray_m(&mesh, keyframe, track).filter(|_| fit == Fit::AsGiven);
+        let fit = astray_m.map_or(fit, Fit::Refused);
         let body = Body { time: keyframe.time, track: number, class, mesh, motion: None };
         let body = (!matches!(fit, Fit::Refused(_))).then_some(body);
         let keyframe = keyframe.token.clone();
@@ -147,6 +150,20 @@ impl Bench<'_> {
             true => (Fit::Aligned(found.residual_m), mesh.moved(&found.aligned_from_given)),
             false => (Fit::Refused(found.residual_m), mesh),
         }
+    }
+
+    /// How far a mesh lies off the box of its track, metres, if that is farther than points may be.
+    fn astray_m(
+        &self,
+        mesh: &TriangleMesh,
+        keyframe: &Keyframe,
+        track: Option<&BoxTrack>,
+    ) -> Option<f64> {
+        let (boxed, _) = box_at(track?, keyframe.time, &self.rules.boxes)?;
+        let centre = Point3::from(boxed.world_from_box.translation.vector);
+        let off_m = (mesh.centre() - centre).norm() - boxed.size_m.norm() / 2.0;
+        let most_m = self.rules.meshes.align.as_ref()?.max_pair_m;
+        (off_m > most_m).then_some(off_m)
     }
 
     fn world_from_mesh(&self, keyframe: &Keyframe) -> Pose {

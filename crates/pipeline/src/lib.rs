@@ -50,6 +50,7 @@ pub use cost::Cost;
 pub use label_keyframe::{LabelOptions, LabelledKeyframe, Stage, label_keyframe};
 pub use memory::MemoryModel;
 pub use occlabel_occlusion::Lenses;
+pub use occlabel_raycast::RaySource;
 pub use own_sensors::{own_points, own_view};
 pub use paint_scene::{MaskedExposures, paint_scene};
 pub use presets::{

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use occlabel_core::{BoxTrack, Fault, Keyframe, Loss, Scene};
+use occlabel_core::{BoxTrack, Exposure, Fault, Keyframe, Loss, Scene};
 use occlabel_dialects::KeyframeInfo;
 use occlabel_disk as disk;
 use occlabel_labels::{InputRecord, PoseRecord, SceneRecord, TrackRecord};
@@ -172,7 +172,23 @@ fn masks(job: &Job, scene: &Scene, findings: &mut Findings) -> Result<Vec<InputR
         let fault = Fault::new("no-masks", place, expected, "none: nothing is painted");
         findings.warn(job.console, &scene.name, &fault);
     }
+    if !records.is_empty() {
+        tell_unpainted(job, scene, &found.exposures(), findings);
+    }
     Ok(records)
+}
+
+/// Cameras none of whose exposures has a mask, where others have some: their folder may be named wrongly.
+fn tell_unpainted(job: &Job, scene: &Scene, masked: &[Vec<Exposure>], findings: &mut Findings) {
+    let cameras = scene.cameras.iter().zip(&scene.exposures).zip(masked);
+    for ((camera, exposures), _) in
+        cameras.filter(|((_, exposures), masked)| masked.is_empty() && !exposures.is_empty())
+    {
+        let expected = "masks, as of the other cameras";
+        let found = format!("none of its {} exposures has one", exposures.len());
+        let fault = Fault::new("no-masks", &camera.name, expected, found);
+        findings.warn(job.console, &scene.name, &fault);
+    }
 }
 
 fn refused_load(job: &Job, fault: Fault) -> Refused {

@@ -12,6 +12,8 @@ use crate::nuscenes::{LensFields, mask_of};
 
 /// `camera_bits` has one bit for each camera.
 const MAX_CAMERAS: usize = 16;
+/// How many columns and rows an image may have.
+const SIDES_PX: std::ops::RangeInclusive<u32> = 1..=65_535;
 
 /// A camera of the file.
 #[derive(Clone, Debug, Deserialize)]
@@ -84,9 +86,10 @@ impl CameraRow {
         let fault = |rule, expected: String, found: String| {
             Fault::new(rule, file, expected, found).record(&self.name)
         };
-        if self.width == 0 || self.height == 0 {
+        if ![self.width, self.height].iter().all(|side| SIDES_PX.contains(side)) {
             let found = format!("{} x {}", self.width, self.height);
-            return Err(fault("camera-size", "a width and a height above 0".into(), found));
+            let expected = "a width and a height of 1 to 65535".into();
+            return Err(fault("camera-size", expected, found));
         }
         let model = self.lens.model();
         let model = model.map_err(|found| fault("camera-model", self.lens.expected(), found))?;
