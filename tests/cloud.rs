@@ -145,6 +145,23 @@ fn a_vision_only_cloud_gives_the_true_occupancy_within_the_cameras_view() {
 }
 
 #[test]
+fn fault_07_a_cloud_far_from_all_poses_is_told() {
+    let cloud = Reconstructed::new();
+    let poses = cloud.place("log/drive/poses.txt");
+    let told = fs::read_to_string(&poses).expect("poses");
+    let moved = told.lines().map(|line| {
+        let mut words: Vec<&str> = line.split(' ').collect();
+        if let Some(x) = words.get_mut(1).filter(|_| !line.starts_with('#')) {
+            *x = "500000.0";
+        }
+        words.join(" ") + "\n"
+    });
+    fs::write(&poses, moved.collect::<String>()).expect("poses elsewhere");
+    let parts = ["within", "of a pose", "frame of the poses"];
+    cloud.label(&cloud.place("labels"), &[]).exits(0).tells(&parts);
+}
+
+#[test]
 fn the_clouds_own_classes_are_kept_and_surfels_need_not_be_spread() {
     let cloud = Reconstructed::new();
     let tree = cloud.place("labels");

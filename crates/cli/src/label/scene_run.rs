@@ -108,6 +108,9 @@ impl SceneRun<'_> {
         let meshes = &self.planned.meshes;
         done.tally.meshes = meshes.embody(self.job, scene, &mut aggregated, findings)?;
         self.tell(&book, &done.tally, findings);
+        if let Some(fault) = far_cloud(scene, &aggregated, self.job.opened.rules.window.radius_m) {
+            findings.warn(self.job.console, &scene.name, &fault);
+        }
         todo.retain(|keyframe| self.is_readable(scene, keyframe, &book, findings));
         let (losses, aggregated) = (findings.losses_of(&scene.name), &aggregated);
         let (journal, done) = (Mutex::new(journal), Mutex::new(done));
@@ -299,6 +302,29 @@ impl SceneDone {
         self.tally.voxels.add(&summary.voxels);
         self.entries.push(entry.clone());
     }
+}
+
+/// What becomes of a scene whose points of no time all lie far from its keyframes: they may be in
+/// another frame than the poses, such as that of a map.
+fn far_cloud(
+    scene: &Scene,
+    aggregated: &AggregatedScene<ClassId>,
+    radius_m: Option<f64>,
+) -> Option<Fault> {
+    let radius_m = radius_m?;
+    let ego = |keyframe: &Keyframe| scene.reference_sweep(keyframe).world_from_ego.translation;
+    let egos: Vec<_> = scene.keyframes.iter().map(|keyframe| ego(keyframe).vector).collect();
+    let timeless = aggregated.background.iter().filter(|sweep| sweep.time.is_none());
+    let mut points = timeless.flat_map(|sweep| &sweep.cloud.positions).peekable();
+    points.peek()?;
+    let is_near = |point: &nalgebra::Point3<f64>| {
+        egos.iter().any(|ego| (point.coords - ego).norm() <= radius_m)
+    };
+    let is_far = !points.any(is_near);
+    is_far.then(|| {
+        let expected = format!("points within {radius_m} m of a pose (aggregate.radius_m)");
+        Fault::new("cloud-far", "the cloud", expected, "none: is it in the frame of the poses?")
+    })
 }
 
 /// What becomes of a scene in which no lidar saw anything.
